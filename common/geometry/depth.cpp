@@ -1,0 +1,53 @@
+#include "common/geometry/depth.hpp"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace liloc {
+namespace {
+
+/// True when no neighbour along `step` supports the pixel; `lo`/`hi` say whether that neighbour exists.
+bool unsupported(const std::uint16_t* pixel, std::ptrdiff_t step, bool lo, bool hi, int tolerance) {
+  const int depth = *pixel;
+  const auto near = [&](bool exists, std::ptrdiff_t offset) {
+    return exists && pixel[offset] != 0 && std::abs(static_cast<int>(pixel[offset]) - depth) <= tolerance;
+  };
+  return !near(lo, -step) && !near(hi, step);
+}
+
+}  // namespace
+
+Result<Cloud> depth_to_cloud(const DepthImage& image, const Camera& camera, const DepthOptions& options) {
+  if (image.width != camera.width || image.height != camera.height)
+    return fail("depth image is {}x{}, its intrinsics are for {}x{}", image.width, image.height, camera.width,
+                camera.height);
+  const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+  if (image.units.size() != width * height)
+    return fail("depth image has {} values, {}x{} needs {}", image.units.size(), width, height, width * height);
+
+  Cloud cloud;
+  cloud.points.reserve(width * height);
+  std::vector<float> ray_x(width);
+  for (std::size_t u = 0; u < width; ++u)
+    ray_x[u] = static_cast<float>((static_cast<double>(u) - camera.cx) / camera.fx);
+  const auto scale = static_cast<float>(camera.depth_scale_m);
+  const auto nearest = static_cast<float>(options.min_range_m), farthest = static_cast<float>(options.max_range_m);
+  for (std::size_t v = 0; v < height; ++v) {
+    const auto ray_y = static_cast<float>((static_cast<double>(v) - camera.cy) / camera.fy);
+    const std::uint16_t* row = image.units.data() + v * width;
+    for (std::size_t u = 0; u < width; ++u) {
+      const float z = static_cast<float>(row[u]) * scale;
+      if (row[u] == 0 || z < nearest || z > farthest) continue;
+      if (options.flying_pixel_share > 0) {
+        const int tolerance = static_cast<int>(row[u] * options.flying_pixel_share);
+        if (unsupported(row + u, 1, u > 0, u + 1 < width, tolerance) &&
+            unsupported(row + u, static_cast<std::ptrdiff_t>(width), v > 0, v + 1 < height, tolerance))
+          continue;
+      }
+      cloud.points.emplace_back(ray_x[u] * z, ray_y * z, z);
+    }
+  }
+  return cloud;
+}
+
+}  // namespace liloc

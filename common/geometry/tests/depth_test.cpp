@@ -1,0 +1,70 @@
+#include "common/geometry/depth.hpp"
+
+#include <gmock/gmock.h>
+
+namespace liloc {
+namespace {
+
+const Camera kCamera{64, 48, 50.0, 52.0, 31.5, 23.5, 0.001};
+
+/// The plane n . p = d seen by kCamera, without noise.
+DepthImage plane_image(const Eigen::Vector3d& normal, double d) {
+  DepthImage image{0, kCamera.width, kCamera.height, {}};
+  for (int v = 0; v < image.height; ++v)
+    for (int u = 0; u < image.width; ++u) {
+      const Eigen::Vector3d ray((u - kCamera.cx) / kCamera.fx, (v - kCamera.cy) / kCamera.fy, 1.0);
+      image.units.push_back(static_cast<std::uint16_t>(std::lround(d / normal.dot(ray) / kCamera.depth_scale_m)));
+    }
+  return image;
+}
+
+TEST(Depth, PointsLieOnThePlaneThatWasSeen) {
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.3, 1.0).normalized();
+  const auto cloud = depth_to_cloud(plane_image(normal, 2.0), kCamera);
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->size(), 64U * 48U);
+  for (const auto& p : cloud->points) EXPECT_NEAR(normal.dot(p.cast<double>()), 2.0, 1e-3);
+}
+
+TEST(Depth, RangeLimitsAndNoReturnAreDropped) {
+  DepthImage image = plane_image({0, 0, 1}, 2.0);
+  image.units[0] = 0;
+  image.units[1] = 100;
+  image.units[2] = 60000;
+  EXPECT_EQ(depth_to_cloud(image, kCamera, {0.25, 8.5, 0.0})->size(), 64U * 48U - 3U);
+}
+
+TEST(Depth, APixelThatHangsInTheAirIsDropped) {
+  DepthImage image = plane_image({0, 0, 1}, 2.0);
+  image.units[64 * 20 + 30] = 1500;
+  EXPECT_EQ(depth_to_cloud(image, kCamera)->size(), 64U * 48U - 1U);
+}
+
+TEST(Depth, AnImageOfAnotherSizeIsRefused) {
+  DepthImage image = plane_image({0, 0, 1}, 2.0);
+  image.width = 63;
+  EXPECT_THAT(depth_to_cloud(image, kCamera).error().message, testing::HasSubstr("63x48"));
+  image.width = 64;
+  image.units.pop_back();
+  EXPECT_FALSE(depth_to_cloud(image, kCamera));
+}
+
+TEST(Camera, ZeroIntrinsicsAreNamed) {
+  Camera camera = kCamera;
+  camera.fx = 0;
+  EXPECT_THAT(camera.validated("site.json: ceiling0").error().message, testing::HasSubstr("ceiling0.fx is 0"));
+  camera = kCamera;
+  camera.depth_scale_m = NAN;
+  EXPECT_FALSE(camera.validated("x"));
+  EXPECT_TRUE(kCamera.validated("x"));
+}
+
+TEST(Camera, AShrunkCameraSeesTheSameRays) {
+  const Camera small = shrunk(kCamera, 4);
+  EXPECT_EQ(small.width, 16);
+  // The centre of small pixel u covers big pixels 4u..4u+3, whose mean is 4u + 1.5.
+  EXPECT_NEAR((5 - small.cx) / small.fx, (21.5 - kCamera.cx) / kCamera.fx, 1e-12);
+}
+
+}  // namespace
+}  // namespace liloc

@@ -1,0 +1,69 @@
+#pragma once
+// The client without threads or network: frames and IMU in, poses and requests out, replies in.
+// `liloc::client` runs it on its threads over DDS, `liloc replay --lockstep` calls it directly.
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/protocol/spot.hpp"
+
+namespace liloc {
+
+enum class LocalMethod { cloud, inertial, dead_reckoning };
+[[nodiscard]] Result<LocalMethod> local_method_from(std::string_view name);
+
+struct EngineOptions {
+  std::string client_id;
+  Camera camera;
+  double min_range_m = 0.25, max_range_m = 8.5;
+  double voxel_size_m = 0.05;
+  StampNs interval_ns = from_ms(800);       ///< upper bound between global registrations (paper, section 5.3)
+  StampNs reply_timeout_ns = from_ms(4000); ///< a request without an answer for so long counts as unanswered
+  LocalMethod local = LocalMethod::cloud;
+  std::optional<Pose> T_imu_sensor;         ///< there is an IMU exactly where this is set
+  double still_seconds = 0;                 ///< the device stands still for so long at the start
+  bool cold = false;                        ///< each request is to be answered on its own
+  std::uint64_t seed = 1;
+};
+
+/// What a frame brought; a row of local.csv.
+struct FrameResult {
+  StampNs stamp_ns = 0;
+  bool informative = true;
+  std::string method;  ///< how its pose was found: "first", "icp", "ransac", "inertial", "guess"
+  bool converged = true;
+  double latency_ms = 0;
+  Pose T_odom_sensor = Pose::Identity();
+  std::uint32_t odom_segment = 0;
+  std::optional<Pose> T_map_sensor;  ///< where the device is, once an answer was verified
+};
+
+enum class Tracking { searching, tracking, coasting };  ///< coasting: located once, the server is silent
+
+/// Not thread-safe except where said; stamps rise.
+class Engine {
+ public:
+  explicit Engine(EngineOptions options);
+  ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  [[nodiscard]] Status add_imu(const ImuSample& sample);
+  /// Errors: wrong size, a stamp that is not newer than the last; the frame is then ignored.
+  [[nodiscard]] Result<FrameResult> add_depth(const DepthImage& image);
+  /// The request that the last frame made due, if any; taken once.
+  [[nodiscard]] std::optional<SpotRequest> take_request();
+  /// Moves map -> odom when verified. Answers of a past odometry segment are ignored.
+  void add_reply(const SpotReply& reply);
+
+  [[nodiscard]] std::optional<Pose> T_map_odom() const;
+  [[nodiscard]] Tracking tracking() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace liloc

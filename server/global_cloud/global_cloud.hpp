@@ -1,0 +1,51 @@
+#pragma once
+// The room as the ceiling sees it now: the newest frames of every LiDAR, and immutable snapshots of them.
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "common/geometry/camera.hpp"
+#include "common/geometry/depth.hpp"
+#include "server/global_cloud/snapshot.hpp"
+
+namespace liloc {
+
+struct GlobalCloudOptions {
+  SnapshotOptions snapshot;
+  StampNs keep_ns = from_seconds(3.0);    ///< frames older than the newest by more than this are forgotten
+  StampNs match_ns = from_ms(100.0);      ///< farther from a request than this is no GPC (paper, section 5.3)
+  std::size_t max_frames_per_lidar = 128;  ///< a LiDAR that floods loses its oldest
+};
+
+/// Thread-safe. Frames come from ingest threads, snapshots are asked for by workers and shared by all clients.
+class GlobalCloud {
+ public:
+  GlobalCloud(Site site, GlobalCloudOptions options);
+
+  /// Takes a depth frame of LiDAR `lidar` (index into the site). Errors: the size differs from the site's, a stamp
+  /// that is not newer than the LiDAR's last. The frame is then left out and nothing changes.
+  [[nodiscard]] Status add_depth(std::size_t lidar, DepthImage image);
+  /// The same for a LiDAR that streams points (sensor frame): they are rendered into its camera.
+  [[nodiscard]] Status add_points(std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor);
+
+  /// The snapshot nearest to `stamp_ns`: of each LiDAR the frame nearest to it, if within `match_ns`.
+  /// Error: no LiDAR has one. The snapshot's own stamp is that of its nearest frame.
+  [[nodiscard]] Result<std::shared_ptr<const Snapshot>> nearest(StampNs stamp_ns);
+
+  [[nodiscard]] const Site& site() const { return site_; }
+
+ private:
+  using Frame = std::shared_ptr<const LidarFrame>;
+  struct Key;
+
+  const Site site_;
+  const GlobalCloudOptions options_;
+  std::mutex mutex_;
+  std::vector<std::deque<Frame>> frames_;                       ///< per LiDAR, by rising stamp
+  std::deque<std::shared_ptr<const Snapshot>> snapshots_;       ///< built lately, newest last
+};
+
+}  // namespace liloc

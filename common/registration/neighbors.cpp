@@ -1,0 +1,45 @@
+#include "common/registration/neighbors.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace liloc {
+
+RadiusSearch::RadiusSearch(const std::vector<Eigen::Vector3f>& points, double radius_m)
+    : radius_(static_cast<float>(radius_m)), inverse_(1.0F / radius_), squared_radius_(radius_ * radius_) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (points[i].allFinite()) order.emplace_back(cell_key(cell_of(points[i], inverse_)), i);
+  std::sort(order.begin(), order.end());
+
+  std::size_t cells = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) cells += i == 0 || order[i].first != order[i - 1].first;
+  table_.assign(std::bit_ceil(cells * 2 + 2), Run{0, 0, 0});
+  shift_ = 64 - std::countr_zero(table_.size());
+
+  sorted_.reserve(order.size());
+  index_.reserve(order.size());
+  for (const auto& [key, i] : order) {
+    sorted_.push_back(points[i]);
+    index_.push_back(i);
+  }
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin;
+    while (end < order.size() && order[end].first == order[begin].first) ++end;
+    std::size_t slot = (order[begin].first * 0x9E3779B97F4A7C15ULL) >> shift_;
+    while (table_[slot].end != 0) slot = (slot + 1) & (table_.size() - 1);
+    table_[slot] = {order[begin].first, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    begin = end;
+  }
+}
+
+std::optional<RadiusSearch::Neighbor> RadiusSearch::nearest(const Eigen::Vector3f& query) const {
+  std::optional<Neighbor> best;
+  for_each(query, [&](std::uint32_t index, float squared) {
+    if (!best || squared < best->squared_distance) best = Neighbor{index, squared};
+  });
+  return best;
+}
+
+}  // namespace liloc

@@ -1,0 +1,32 @@
+#pragma once
+// Clouds to bytes and back. Bytes come from a network: decoding trusts nothing in them.
+//
+//   const Result<EncodedCloud> lpc = encode(cloud_sensor);   // about 1.3 bytes a point at 0.05 m
+//   const Result<Cloud> cloud = decode(*lpc);                // the same points, in another order
+#include <cstddef>
+
+#include "common/geometry/cloud.hpp"
+#include "common/protocol/spot.hpp"
+
+namespace liloc {
+
+struct CodecOptions {
+  CloudCodec codec = CloudCodec::draco;
+  /// Draco: 6..16 over the cloud's longest side. RMSE is half a step: 3 mm (1.7 mm a coordinate) at 10 bits and
+  /// 6 m.
+  int quantization_bits = 10;
+  int octree_depth = 8;  ///< octree: 4..12; a leaf is the longest side / 2^depth, and merges its points
+};
+
+constexpr std::size_t kMaxCodecPoints = 100'000;
+constexpr float kMaxCoordinate_m = 1000.0F;
+
+/// Points only: normals are made anew by the receiver. Pure. Errors: an empty cloud, over kMaxCodecPoints, a
+/// point that is not finite or beyond 1 km, options out of range.
+[[nodiscard]] Result<EncodedCloud> encode(const Cloud& cloud, const CodecOptions& options = {});
+
+/// Never throws, and never allocates for more than `max_points`. Errors: a damaged stream, more points than
+/// `max_points`, no points, a decoded point that is not finite or beyond 1 km. The order of points is not kept.
+[[nodiscard]] Result<Cloud> decode(const EncodedCloud& encoded, std::size_t max_points = kMaxCodecPoints);
+
+}  // namespace liloc

@@ -1,0 +1,169 @@
+#include "common/codec/codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "common/geometry/voxel.hpp"
+
+namespace liloc {
+namespace {
+
+// What a sensor sees of a furnished room 6 m long: floor, two walls, a desk, a shelf; 4 mm noise; 0.05 m
+// voxels.
+Cloud room_view(unsigned seed, int samples = 20'000) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::normal_distribution<float> noise(0, 0.004F);
+  Cloud cloud;
+  for (int i = 0; i < samples; ++i) {
+    const float a = 6 * unit(random), b = 2 * unit(random), n = noise(random);
+    switch (i % 5) {
+      case 0:
+        cloud.points.emplace_back(a / 2 - 1.5F, 1.5F + n, 3 * b);
+        break;
+      case 1:
+        cloud.points.emplace_back(a / 2 - 1.5F, b - 0.5F, 6 + n);
+        break;
+      case 2:
+        cloud.points.emplace_back(-1.5F + n, b - 0.5F, a);
+        break;
+      case 3:
+        cloud.points.emplace_back(1 + a / 5, 0.6F + n, 3 + b / 3);
+        break;
+      default:
+        cloud.points.emplace_back(-1 + a / 8, -0.5F + b / 2, 4 + n);
+    }
+  }
+  return voxel_downsample(cloud, 0.05);
+}
+
+float longest_side_m(const Cloud& cloud) {
+  Eigen::AlignedBox3f box;
+  for (const auto& p : cloud.points) box.extend(p);
+  return box.sizes().maxCoeff();
+}
+
+double rmse_m(const Cloud& from, const Cloud& to) {
+  double sum = 0;
+  for (const auto& p : from.points) {
+    float best = std::numeric_limits<float>::max();
+    for (const auto& q : to.points) best = std::min(best, (p - q).squaredNorm());
+    sum += static_cast<double>(best);
+  }
+  return std::sqrt(sum / static_cast<double>(from.size()));
+}
+
+class CodecSeeds : public testing::TestWithParam<unsigned> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, CodecSeeds, testing::Values(1, 2, 3));
+
+TEST_P(CodecSeeds, DracoErrsByHalfAStep) {
+  const Cloud cloud = room_view(GetParam());
+  for (const int bits : {8, 10, 12}) {
+    const auto encoded = encode(cloud, {.quantization_bits = bits});
+    ASSERT_TRUE(encoded) << encoded.error().message;
+    const auto decoded = decode(*encoded);
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(decoded->size(), cloud.size());
+    const double step_m = longest_side_m(cloud) / ((1 << bits) - 1);
+    EXPECT_LT(rmse_m(cloud, *decoded), 0.53 * step_m) << bits;
+  }
+}
+
+TEST_P(CodecSeeds, DracoTakesATenthOfTheRawBytes) {
+  const Cloud cloud = room_view(GetParam());
+  const auto encoded = encode(cloud);
+  ASSERT_TRUE(encoded);
+  EXPECT_LT(encoded->bytes.size(), cloud.size() * 12 / 7) << cloud.size();
+  const auto again = encode(cloud);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(encoded->bytes, again->bytes);
+}
+
+TEST_P(CodecSeeds, OctreeErrsByHalfALeaf) {
+  const Cloud cloud = room_view(GetParam());
+  for (const int depth : {8, 10}) {
+    const auto encoded = encode(cloud, {.codec = CloudCodec::octree, .octree_depth = depth});
+    ASSERT_TRUE(encoded) << encoded.error().message;
+    const auto decoded = decode(*encoded);
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_LT(rmse_m(cloud, *decoded), 0.53 * longest_side_m(cloud) / (1 << depth)) << depth;
+  }
+}
+
+TEST(Codec, OnePointAndEqualPointsSurvive) {
+  for (const auto codec : {CloudCodec::draco, CloudCodec::octree}) {
+    const Cloud one{{Eigen::Vector3f(1, -2, 3)}, {}}, three{{3, Eigen::Vector3f(0.5F, 0, 2)}, {}};
+    for (const Cloud& cloud : {one, three}) {
+      const auto encoded = encode(cloud, {.codec = codec});
+      ASSERT_TRUE(encoded) << encoded.error().message;
+      const auto decoded = decode(*encoded);
+      ASSERT_TRUE(decoded) << decoded.error().message;
+      EXPECT_LT(rmse_m(cloud, *decoded), 0.01);
+    }
+  }
+}
+
+TEST(Codec, RefusesCloudsThatCannotTravel) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(encode(Cloud{}));
+  EXPECT_FALSE(encode(Cloud{{Eigen::Vector3f(nan, 0, 0)}, {}}));
+  EXPECT_FALSE(encode(Cloud{{Eigen::Vector3f(0, 2000, 0)}, {}}));
+  EXPECT_FALSE(encode(Cloud{std::vector<Eigen::Vector3f>(kMaxCodecPoints + 1, Eigen::Vector3f::Zero()), {}}));
+  const Cloud fine{{Eigen::Vector3f(1, 0, 0)}, {}};
+  EXPECT_FALSE(encode(fine, {.quantization_bits = 5}));
+  EXPECT_FALSE(encode(fine, {.codec = CloudCodec::octree, .octree_depth = 13}));
+}
+
+TEST(Codec, RefusesMorePointsThanAllowedBeforeDecoding) {
+  const Cloud cloud = room_view(4);
+  for (const auto codec : {CloudCodec::draco, CloudCodec::octree}) {
+    auto encoded = encode(cloud, {.codec = codec});
+    ASSERT_TRUE(encoded);
+    const auto decoded = decode(*encoded, 100);
+    ASSERT_FALSE(decoded);
+    EXPECT_NE(decoded.error().message.find("must be 1..100"), std::string::npos) << decoded.error().message;
+  }
+}
+
+TEST(Codec, RefusesADracoHeaderWithTwoCounts) {  // else Draco writes past the end of what it allocated
+  auto encoded = encode(room_view(5));
+  ASSERT_TRUE(encoded);
+  encoded->bytes[28] ^= 0x10;
+  const auto decoded = decode(*encoded);
+  ASSERT_FALSE(decoded);
+  EXPECT_NE(decoded.error().message.find("two counts"), std::string::npos);
+}
+
+TEST(Codec, RefusesAnUnknownCodec) {
+  EXPECT_FALSE(decode(EncodedCloud{static_cast<CloudCodec>(9), {1, 2, 3}}));
+  EXPECT_FALSE(decode(EncodedCloud{CloudCodec::draco, {}}));
+  EXPECT_FALSE(decode(EncodedCloud{CloudCodec::octree, {}}));
+}
+
+// 20 000 damaged streams: each is refused or decodes to finite points within bounds; none crashes.
+TEST(Codec, SurvivesMutatedStreams) {
+  std::mt19937 random(20'000);
+  const Cloud cloud = room_view(6, 800);
+  const auto draco = encode(cloud), octree = encode(cloud, {.codec = CloudCodec::octree});
+  ASSERT_TRUE(draco && octree);
+  int refused = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    EncodedCloud mutant = i % 2 == 0 ? *draco : *octree;
+    for (unsigned flips = 1 + random() % 8; flips > 0; --flips)
+      mutant.bytes[random() % mutant.bytes.size()] = static_cast<std::uint8_t>(random());
+    if (random() % 4 == 0) mutant.bytes.resize(random() % mutant.bytes.size());
+    const auto decoded = decode(mutant);
+    if (!decoded) {
+      ++refused;
+      continue;
+    }
+    ASSERT_LE(decoded->size(), kMaxCodecPoints);
+    for (const auto& p : decoded->points) ASSERT_LE(p.cwiseAbs().maxCoeff(), kMaxCoordinate_m);
+  }
+  EXPECT_GT(refused, 5'000);
+}
+
+}  // namespace
+}  // namespace liloc

@@ -44,8 +44,8 @@ struct LidarRecording {
 struct Recording {
   std::filesystem::path root;
   Site site;
-  std::vector<LidarRecording> lidars;   ///< in the order of site.global_lidars
-  std::vector<DeviceRecording> devices; ///< by id; empty where the recording has none
+  std::vector<LidarRecording> lidars;    ///< in the order of site.global_lidars
+  std::vector<DeviceRecording> devices;  ///< by id; empty where the recording has none
 };
 
 /// Errors name file, field, value and remedy; nothing is half-read. Frames are listed, not decoded.

@@ -1,0 +1,48 @@
+#pragma once
+// What a server tells about itself once a second, for tables and dashboards.
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/stamp.hpp"
+#include "common/wire/dispatcher.hpp"
+
+namespace liloc::wire {
+
+enum class LidarState : std::uint8_t { waiting = 0, ok = 1, slow = 2, silent = 3, malformed = 4 };
+[[nodiscard]] std::string_view name_of(LidarState state);
+
+struct LidarHealth {
+  std::string id;
+  LidarState state = LidarState::waiting;  ///< waiting: nothing has come yet
+  double measured_hz = 0;
+  std::uint64_t frames = 0, malformed = 0;
+  std::string last_error;  ///< at most 200 characters
+};
+
+struct ServerStatus {
+  std::string server_id;
+  StampNs stamp_ns = 0;
+  double uptime_s = 0;
+  std::vector<LidarHealth> lidars;  ///< at most 64
+  std::uint32_t clients = 0, queued = 0;
+  std::uint64_t answered = 0, verified = 0, refused = 0;  ///< since the start; answered counts every reply
+};
+
+class StatusPublisher {
+ public:
+  [[nodiscard]] static Result<StatusPublisher> create(const Participant& participant);
+  [[nodiscard]] Status publish(const ServerStatus& status) const;
+
+ private:
+  explicit StatusPublisher(std::vector<Entity> entities) : entities_(std::move(entities)) {}
+  std::vector<Entity> entities_;
+};
+
+[[nodiscard]] Status subscribe_status(Dispatcher& dispatcher,
+                                      std::function<void(Result<ServerStatus>)> handler);
+
+}  // namespace liloc::wire

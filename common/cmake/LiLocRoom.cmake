@@ -6,6 +6,7 @@
 add_library(liloc_warnings INTERFACE)
 target_compile_options(liloc_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # gcc 12 warns of its own string concatenation (PR 105651)
   $<$<BOOL:${LILOC_WERROR}>:-Werror>)
 
 if(LILOC_SANITIZE)

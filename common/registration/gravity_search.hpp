@@ -1,0 +1,33 @@
+#pragma once
+#include <chrono>
+#include <vector>
+
+#include "common/registration/target.hpp"
+
+namespace liloc {
+
+struct Candidate {
+  Pose T_map_sensor = Pose::Identity();
+  double score = 0;  ///< the proposer's own; only `judge` compares proposers
+};
+
+struct GravitySearchOptions {
+  double yaw_step_deg = 5.0;
+  std::size_t keep = 300;    ///< coarse maxima that are climbed on the fine field
+  std::size_t propose = 40;  ///< distinct poses returned, best first
+  std::chrono::steady_clock::duration time_limit = std::chrono::seconds(2);
+  int threads = 1;
+};
+
+/// With gravity known four unknowns remain: every x, y, z and yaw at 0.2 m and `yaw_step_deg` is scored on the
+/// target's coarse field by adding whole rows of it, the best are climbed on the fine one. `up_sensor`: unit vector
+/// against gravity in sensor axes. Past the time limit the yaws searched so far count. Needs the target's fields.
+[[nodiscard]] std::vector<Candidate> gravity_search(const Target& target, const Query& query,
+                                                    const Eigen::Vector3d& up_sensor,
+                                                    const GravitySearchOptions& options = {});
+
+/// Sorts by score and keeps the best of each group closer than `distance_m` and `angle_rad`.
+[[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distance_m, double angle_rad,
+                                              std::size_t most);
+
+}  // namespace liloc

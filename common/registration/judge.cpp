@@ -1,0 +1,78 @@
+#include "common/registration/judge.hpp"
+
+#include <algorithm>
+
+namespace liloc {
+namespace {
+
+constexpr double kConflictWeight = 8.0;
+
+/// The word of all ceiling views on one device point: one that measured a surface there outweighs one that, past an
+/// edge, looked by.
+Sight word_of(const std::vector<SightView>& views, const Eigen::Vector3f& p_map, float tolerance) {
+  Sight word = Sight::unseen;
+  for (const SightView& view : views) {
+    const Sight sight = view.look(p_map, tolerance);
+    if (sight == Sight::agrees) return sight;
+    if (sight == Sight::conflict) word = sight;
+  }
+  return word;
+}
+
+struct Counts {
+  int agree = 0, conflict = 0;
+};
+
+Counts device_against_ceiling(const Target& target, const Cloud& points, const Eigen::Isometry3f& T, float tolerance) {
+  Counts counts;
+  for (const Eigen::Vector3f& point : points.points) {
+    const Eigen::Vector3f p = T * point;
+    if (target.views.empty()) {
+      const std::int32_t j = target.nearest.nearest(p);
+      counts.agree += j != NearestGrid::kNone;
+      continue;
+    }
+    const Sight sight = word_of(target.views, p, tolerance);
+    counts.agree += sight == Sight::agrees;
+    counts.conflict += sight == Sight::conflict;
+  }
+  return counts;
+}
+
+Counts ceiling_against_device(const Target& target, const SightView& view, const Eigen::Isometry3f& T_sensor_map,
+                              float tolerance) {
+  Counts counts;
+  for (const Eigen::Vector3f& point : target.coarse.points) {
+    const Sight sight = view.look_sensor(T_sensor_map * point, tolerance);
+    counts.agree += sight == Sight::agrees;
+    counts.conflict += sight == Sight::conflict;
+  }
+  return counts;
+}
+
+}  // namespace
+
+Judgement judge(const Target& target, const Query& query, const Cloud& device_points, const Pose& T_map_sensor,
+                double tolerance_m) {
+  Judgement result;
+  if (device_points.empty()) return result;
+  const auto tolerance = static_cast<float>(tolerance_m);
+  const double count = static_cast<double>(device_points.size());
+  const Counts device = device_against_ceiling(target, device_points, T_map_sensor.cast<float>(), tolerance);
+  result.agree = device.agree / count;
+  result.conflict = device.conflict / count;
+  result.score = result.agree - kConflictWeight * result.conflict;
+  if (query.view.empty()) return result;
+  const Counts map = ceiling_against_device(target, query.view, T_map_sensor.inverse().cast<float>(), tolerance);
+  const double seen = map.agree + map.conflict;
+  if (seen > 0) {
+    result.map_agree = map.agree / seen;
+    result.map_conflict = map.conflict / seen;
+  }
+  const double medium = std::max<double>(1.0, static_cast<double>(query.medium.size()));
+  result.map_seen = seen / medium;
+  result.score += (map.agree - kConflictWeight * map.conflict) / medium;
+  return result;
+}
+
+}  // namespace liloc

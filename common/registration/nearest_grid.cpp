@@ -1,0 +1,58 @@
+#include "common/registration/nearest_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace liloc {
+namespace {
+
+constexpr double kMostBlocks = 1 << 24;  // 67 MB of block table: a larger extent gets larger cells
+
+}  // namespace
+
+NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell_m, double reach_m) {
+  Eigen::AlignedBox3f box;
+  for (const auto& p : points)
+    if (p.allFinite()) box.extend(p);
+  if (box.isEmpty()) return;
+  const auto reach = static_cast<float>(reach_m);
+  const Eigen::Vector3d size = (box.sizes().array() + 2 * reach).cast<double>();
+  const double blocks = size.prod() / std::pow(8 * cell_m, 3);
+  const auto cell = static_cast<float>(blocks > kMostBlocks ? cell_m * std::cbrt(blocks / kMostBlocks) : cell_m);
+  inverse_ = 1.0F / cell;
+  origin_ = box.min().array() - reach;
+  const Eigen::Vector3i cells = (size.cast<float>() * inverse_).array().ceil().cast<int>() + 1;
+  extent_ = cells.cast<float>();
+  block_count_ = (cells.array() + 7) / 8;
+  blocks_.assign(static_cast<std::size_t>(block_count_.cast<std::int64_t>().prod()), kNone);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].allFinite()) stamp(points, static_cast<std::int32_t>(i), cell, reach);
+}
+
+std::int32_t& NearestGrid::cell_at(const Eigen::Vector3i& cell) {
+  std::int32_t& block = blocks_[block_index(cell)];
+  if (block == kNone) {
+    block = static_cast<std::int32_t>(cells_.size());
+    cells_.emplace_back().fill(kNone);
+  }
+  return cells_[static_cast<std::size_t>(block)][cell_index(cell)];
+}
+
+void NearestGrid::stamp(const std::vector<Eigen::Vector3f>& points, std::int32_t index, float cell, float reach) {
+  const Eigen::Vector3f p = points[static_cast<std::size_t>(index)];
+  const Eigen::Vector3i lo = ((p - origin_).array() * inverse_ - reach * inverse_).cast<int>().max(0);
+  const Eigen::Vector3i hi =
+      ((p - origin_).array() * inverse_ + reach * inverse_).cast<int>().min(extent_.cast<int>().array() - 1);
+  const float squared_reach = reach * reach;
+  for (int z = lo.z(); z <= hi.z(); ++z)
+    for (int y = lo.y(); y <= hi.y(); ++y)
+      for (int x = lo.x(); x <= hi.x(); ++x) {
+        const Eigen::Vector3f centre = origin_ + (Eigen::Vector3f(x, y, z).array() + 0.5F).matrix() * cell;
+        const float squared = (centre - p).squaredNorm();
+        if (squared > squared_reach) continue;
+        std::int32_t& held = cell_at({x, y, z});
+        if (held == kNone || squared < (centre - points[static_cast<std::size_t>(held)]).squaredNorm()) held = index;
+      }
+}
+
+}  // namespace liloc

@@ -1,0 +1,146 @@
+#include "common/registration/refine.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace liloc {
+namespace {
+
+/// The normal equations of one iteration, taken about the source's origin so that they stay well conditioned.
+struct Normals {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  double squared = 0, weight = 0;
+  int pairs = 0;
+
+  void add(const Vector6d& jacobian, double residual, double w) {
+    H.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, w);
+    g += jacobian * (w * residual);
+    squared += w * residual * residual;
+    weight += w;
+    ++pairs;
+  }
+};
+
+struct Side {
+  const Cloud& target;
+  const NearestGrid& nearest;
+  const Cloud& source;
+};
+
+Normals accumulate(const Side& side, const Pose& T, double distance_m, const RefineOptions& options) {
+  Normals sum;
+  const Eigen::Isometry3f Tf = T.cast<float>();
+  const bool with_normals = side.source.has_normals() && side.target.has_normals();
+  const auto agreement = static_cast<float>(options.min_normal_agreement);
+  const auto limit = static_cast<float>(distance_m * distance_m);
+  const double width = 0.25 * limit;  // Geman-McClure: a pair at half the distance weighs a quarter
+  for (std::size_t i = 0; i < side.source.size(); ++i) {
+    const Eigen::Vector3f arm = Tf.linear() * side.source.points[i];
+    const Eigen::Vector3f p = arm + Tf.translation();
+    const std::int32_t j = side.nearest.nearest(p);
+    if (j == NearestGrid::kNone) continue;
+    const Eigen::Vector3f offset = p - side.target.points[static_cast<std::size_t>(j)];
+    const float squared = offset.squaredNorm();
+    if (squared > limit) continue;
+    const double w = std::pow(width / (width + squared), 2);
+    if (with_normals) {
+      const Eigen::Vector3f& n_target = side.target.normals[static_cast<std::size_t>(j)];
+      const Eigen::Vector3f n_source = Tf.linear() * side.source.normals[i];
+      if (n_target.dot(n_source) < agreement) continue;
+      if (!options.point_to_point) {
+        const Eigen::Vector3f n = (n_target + n_source).normalized();
+        Vector6d jacobian;
+        jacobian << arm.cross(n).cast<double>(), n.cast<double>();
+        sum.add(jacobian, static_cast<double>(n.dot(offset)), w);
+        continue;
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3f n = Eigen::Vector3f::Unit(axis);
+      Vector6d jacobian;
+      jacobian << arm.cross(n).cast<double>(), n.cast<double>();
+      sum.add(jacobian, static_cast<double>(offset[axis]), w);
+    }
+  }
+  sum.H = sum.H.selfadjointView<Eigen::Lower>();
+  return sum;
+}
+
+/// Solves for the step, holding back directions that the pairs hardly observe.
+Vector6d solve(const Normals& sum) {
+  Matrix6d damped = sum.H;
+  damped.diagonal().array() += 1e-4 * sum.weight + 1e-9;
+  return -damped.ldlt().solve(sum.g);
+}
+
+Pose moved(const Pose& T, const Vector6d& step) {
+  Pose result = T;
+  result.linear() = so3_exp(step.head<3>()) * T.linear();
+  result.translation() += step.tail<3>();
+  return result;
+}
+
+/// Iterates with a distance that shrinks geometrically; true when the last step was small.
+bool iterate(const Side& side, int iterations, double from_m, double to_m, const RefineOptions& options, Pose* T) {
+  bool small = false;
+  for (int i = 0; i < iterations; ++i) {
+    const double share = iterations > 1 ? std::min(1.0, 1.5 * i / (iterations - 1.0)) : 1.0;
+    const Normals sum = accumulate(side, *T, from_m * std::pow(to_m / from_m, share), options);
+    if (sum.pairs < 12) return false;
+    const Vector6d step = solve(sum);
+    *T = moved(*T, step);
+    small = step.head<3>().norm() < 2e-4 && step.tail<3>().norm() < 5e-4;
+    if (small && share >= 1.0) return true;
+  }
+  return small;
+}
+
+}  // namespace
+
+Fit fit_of(const Target& target, const Cloud& cloud_source, const Pose& T_target_source, double distance_m) {
+  const Eigen::Isometry3f T = T_target_source.cast<float>();
+  std::size_t near = 0;
+  double squared_sum = 0;
+  for (const auto& point : cloud_source.points) {
+    const Eigen::Vector3f p = T * point;
+    const std::int32_t j = target.nearest.nearest(p);
+    if (j == NearestGrid::kNone) continue;
+    const float squared = (p - target.cloud.points[static_cast<std::size_t>(j)]).squaredNorm();
+    if (squared > distance_m * distance_m) continue;
+    ++near;
+    squared_sum += static_cast<double>(squared);
+  }
+  if (near == 0) return {};
+  return {static_cast<double>(near) / static_cast<double>(cloud_source.size()),
+          std::sqrt(squared_sum / static_cast<double>(near))};
+}
+
+Alignment refine(const Target& target, const Query& query, const Pose& T_target_source_guess,
+                 const RefineOptions& options) {
+  Alignment result;
+  Pose T = T_target_source_guess;
+  const double middle_m = std::min(options.start_distance_m, 2 * options.end_distance_m);
+  if (options.coarse_iterations > 0)
+    iterate({target.coarse, target.nearest_coarse, query.medium}, options.coarse_iterations, options.start_distance_m,
+            middle_m, options, &T);
+  const Side fine{target.cloud, target.nearest, query.cloud};
+  result.converged = iterate(fine, options.fine_iterations, std::min(middle_m, 0.125), options.end_distance_m,
+                             options, &T);
+  result.T_target_source = normalized(T);
+
+  const Normals sum = accumulate(fine, result.T_target_source, options.end_distance_m, options);
+  result.pairs = sum.pairs;
+  if (sum.pairs >= 12 && sum.weight > 0) {
+    const double variance = std::max(sum.squared / sum.weight, 1e-6);
+    Matrix6d R = Matrix6d::Zero();
+    R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = result.T_target_source.linear();
+    result.information = R.transpose() * sum.H * R / variance;
+    result.inlier_rmse_m = std::sqrt(sum.squared / sum.weight);
+  }
+  result.fitness = fit_of(target, query.cloud, result.T_target_source, 0.05).fitness;
+  return result;
+}
+
+}  // namespace liloc

@@ -1,0 +1,37 @@
+#pragma once
+#include "common/registration/target.hpp"
+
+namespace liloc {
+
+struct RefineOptions {
+  double start_distance_m = 0.30;  ///< farther pairs are ignored at first ...
+  double end_distance_m = 0.10;    ///< ... and at last
+  int coarse_iterations = 12;      ///< on the thinned clouds, at distances down to twice the end; 0 skips
+  int fine_iterations = 8;         ///< on the full clouds
+  double min_normal_agreement = 0.5;  ///< cosine between the two normals of a pair
+  bool point_to_point = false;     ///< the paper's ICP, for comparison
+};
+
+/// How well a pose fits. Where the pose itself is poor this is a graded result, not an error.
+struct Alignment {
+  Pose T_target_source = Pose::Identity();
+  Matrix6d information = Matrix6d::Zero();  ///< 1/(rad, m)^2 in the source's axes, noise of the residuals taken out
+  double fitness = 0;         ///< share of source points with a target point within one voxel
+  double inlier_rmse_m = 0;   ///< distance along the normal, over those
+  int pairs = 0;
+  bool converged = false;
+};
+
+/// Refines a guess by iterated closest points: point-to-plane along the mean of both normals, pairs weighted by
+/// Geman-McClure with a width that shrinks from start to end distance. Pure; many threads may share `target`.
+[[nodiscard]] Alignment refine(const Target& target, const Query& query, const Pose& T_target_source_guess,
+                               const RefineOptions& options = {});
+
+/// Share of points with a target point within `distance_m` and the RMSE over them, without refinement.
+struct Fit {
+  double fitness = 0, inlier_rmse_m = 0;
+};
+[[nodiscard]] Fit fit_of(const Target& target, const Cloud& cloud_source, const Pose& T_target_source,
+                         double distance_m);
+
+}  // namespace liloc

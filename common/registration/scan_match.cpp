@@ -1,0 +1,174 @@
+#include "common/registration/scan_match.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace liloc {
+namespace {
+
+constexpr double kCharacteristicLengthM = 2.0;  // weighs radians against metres when directions are compared
+
+struct Source {
+  Eigen::Vector3f mean, normal;
+  float weight;
+  float sd;
+};
+
+/// A source surfel and its plane, for one iteration.
+struct Pair {
+  Eigen::Vector3f lever;  ///< of the transformed point about the sensor, map axes
+  Eigen::Vector3f normal;
+  float residual;
+  float weight;
+  float sd;
+};
+
+std::vector<Source> choose_sources(const std::vector<Surfel>& frame, const ScanMatchOptions& options) {
+  std::vector<Source> flat;
+  flat.reserve(frame.size());
+  for (const Surfel& s : frame) {
+    if (s.flatness < static_cast<float>(options.min_flatness)) continue;
+    const float range = s.mean.norm();
+    const float sd = static_cast<float>(options.sensor_sd_m + options.noise_per_m2 * range * range);
+    flat.push_back({s.mean, s.normal, s.flatness, sd});
+  }
+  if (flat.size() <= options.max_surfels) return flat;
+  std::vector<Source> thin;
+  thin.reserve(options.max_surfels);
+  const double step = static_cast<double>(flat.size()) / static_cast<double>(options.max_surfels);
+  for (std::size_t i = 0; i < options.max_surfels; ++i)
+    thin.push_back(flat[static_cast<std::size_t>(static_cast<double>(i) * step)]);
+  return thin;
+}
+
+void find_pairs(const LocalMap& map, const std::vector<Source>& sources, const Pose& T, StampNs now_ns,
+                std::vector<Pair>& pairs) {
+  pairs.clear();
+  const Eigen::Isometry3f Tf = T.cast<float>();
+  for (const Source& s : sources) {
+    const Eigen::Vector3f lever = Tf.linear() * s.mean, p = lever + Tf.translation();
+    const LocalMap::Cell* cell = map.find(p, Tf.linear() * s.normal);
+    if (cell == nullptr) continue;
+    const float trust = map.trust(*cell, now_ns) * std::max(0.1F, cell->surfel.flatness);
+    pairs.push_back(
+        {lever, cell->surfel.normal, cell->surfel.normal.dot(p - cell->surfel.mean), s.weight * trust, s.sd});
+  }
+}
+
+/// Half-width of the kernel: three robust standard deviations, never under the sensor's own.
+float kernel_width(const std::vector<Pair>& pairs, const ScanMatchOptions& options) {
+  std::vector<float> sizes;
+  sizes.reserve(pairs.size());
+  for (const Pair& p : pairs) sizes.push_back(std::abs(p.residual));
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const float width = 3.0F * 1.4826F * *middle;
+  return std::clamp(width, 2.0F * static_cast<float>(options.sensor_sd_m), static_cast<float>(options.kernel_max_m));
+}
+
+struct Normal {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+};
+
+Normal accumulate(const std::vector<Pair>& pairs, float width, const ScanMatchOptions& options) {
+  Normal n;
+  double total = 0;
+  Eigen::Matrix<double, 6, 1> J;
+  for (const Pair& p : pairs) {
+    const float scaled = p.residual / width;
+    const float robust = 1.0F / ((1 + scaled * scaled) * (1 + scaled * scaled));
+    const double share = static_cast<double>(p.weight) * robust;
+    const double weight = share / (static_cast<double>(p.sd) * p.sd);
+    total += share;
+    J.head<3>() = p.lever.cross(p.normal).cast<double>();
+    J.tail<3>() = p.normal.cast<double>();
+    n.H.selfadjointView<Eigen::Lower>().rankUpdate(J, weight);
+    n.b -= J * (weight * static_cast<double>(p.residual));
+  }
+  n.H = n.H.selfadjointView<Eigen::Lower>();
+  const double correlated = std::min(1.0, options.independent_surfels / std::max(total, 1.0));
+  n.H *= correlated;
+  n.b *= correlated;
+  return n;
+}
+
+/// Projector onto the directions that the scene observes (solution remapping, Zhang et al. 2016).
+Matrix6d observed_directions(const Matrix6d& H, double least_share, int& unobserved) {
+  Vector6d unit = Vector6d::Ones();
+  unit.head<3>() /= kCharacteristicLengthM;
+  const Matrix6d scaled = unit.asDiagonal() * H * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
+  const double least = least_share * scaled.trace();
+  Matrix6d keep = Matrix6d::Zero();
+  unobserved = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (solver.eigenvalues()[i] < least) {
+      ++unobserved;
+      continue;
+    }
+    const Vector6d v = solver.eigenvectors().col(i);
+    keep += v * v.transpose();
+  }
+  return unit.asDiagonal() * keep * unit.cwiseInverse().asDiagonal();
+}
+
+/// Adds the guess as a measurement of the pose.
+void add_prior(Normal& n, const MotionGuess& guess, const Pose& T) {
+  const double w_rad = 1.0 / (guess.sd_rad * guess.sd_rad), w_m = 1.0 / (guess.sd_m * guess.sd_m);
+  n.H.diagonal().head<3>().array() += w_rad;
+  n.H.diagonal().tail<3>().array() += w_m;
+  n.b.head<3>() += w_rad * so3_log(guess.T_map_sensor.linear() * T.linear().transpose());
+  n.b.tail<3>() += w_m * (guess.T_map_sensor.translation() - T.translation());
+}
+
+/// Turns about the sensor, so that rotation and translation stay decoupled far from the map's origin.
+void apply(Pose& T, const Vector6d& step) {
+  T.linear() = so3_exp(step.head<3>()) * T.linear();
+  T.translation() += step.tail<3>();
+}
+
+void grade(ScanMatch& match, const std::vector<Pair>& pairs, std::size_t sources) {
+  double sum = 0, inside = 0;
+  for (const Pair& p : pairs) {
+    if (std::abs(p.residual) > 3 * p.sd) continue;
+    sum += static_cast<double>(p.residual) * p.residual;
+    inside += 1;
+  }
+  const auto all = static_cast<double>(std::max<std::size_t>(sources, 1));
+  match.overlap = inside / all;
+  match.paired = static_cast<double>(pairs.size()) / all;
+  match.rmse_m = inside > 0 ? std::sqrt(sum / inside) : 0;
+}
+
+}  // namespace
+
+Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
+                             StampNs now_ns, const ScanMatchOptions& options) {
+  if (map.size() == 0) return fail("scan match: the local map is empty; insert a first frame");
+  const std::vector<Source> sources = choose_sources(frame, options);
+  if (sources.empty()) return fail("scan match: none of {} surfels is flat enough for a normal", frame.size());
+  ScanMatch match;
+  match.T_map_sensor = guess.T_map_sensor;
+  std::vector<Pair> pairs;
+  pairs.reserve(sources.size());
+  for (match.iterations = 0; match.iterations < options.max_iterations && !match.settled; ++match.iterations) {
+    find_pairs(map, sources, match.T_map_sensor, now_ns, pairs);
+    if (pairs.size() < 6) break;
+    Normal n = accumulate(pairs, kernel_width(pairs, options), options);
+    const Matrix6d observed = observed_directions(n.H, options.observed_share, match.unobserved);
+    add_prior(n, guess, match.T_map_sensor);
+    match.information = n.H;
+    Vector6d step = n.H.ldlt().solve(n.b);
+    if (match.unobserved > 0) step = observed * step;
+    apply(match.T_map_sensor, step);
+    match.settled = step.head<3>().norm() < options.stop_rad && step.tail<3>().norm() < options.stop_m;
+  }
+  grade(match, pairs, sources.size());
+  match.T_map_sensor = normalized(match.T_map_sensor);
+  return match;
+}
+
+}  // namespace liloc

@@ -1,0 +1,64 @@
+#pragma once
+// Free space seen along lines of sight: a depth sensor looks through empty space up to what it measures.
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/camera.hpp"
+#include "common/geometry/cloud.hpp"
+
+namespace liloc {
+
+/// What a line of sight says of a point.
+enum class Sight : std::uint8_t {
+  unseen,    ///< outside the view, or nothing was measured there
+  agrees,    ///< a surface was measured at the point
+  conflict,  ///< the sensor looked through the point: something there would have been seen
+  behind     ///< hidden behind a measured surface
+};
+
+/// A depth sensor's measurement, thinned to bands: for each pixel of a small image the nearest and the farthest
+/// depth measured in and around it. The bands keep a point beside an edge from counting as a conflict.
+class SightView {
+ public:
+  SightView() = default;
+  /// `factor` pixels of the image make one of the view. T_sensor_world places world points before the sensor.
+  static SightView from_depth(const DepthImage& image, const Camera& camera, const Pose& T_sensor_world, int factor,
+                              double max_range_m);
+  /// Rebuilds the view of a device from its voxelized cloud (sensor frame): each voxel covers the pixels that its
+  /// size covers. Pixels without a point stay unseen.
+  static SightView from_cloud(const Cloud& cloud_sensor, const Camera& camera, double voxel_size_m, int width);
+
+  /// `p` in the world frame of the view; `tolerance_m` for agreeing, twice that for a conflict.
+  [[nodiscard]] Sight look(const Eigen::Vector3f& p_world, float tolerance_m) const {
+    return look_sensor(T_sensor_world_ * p_world, tolerance_m);
+  }
+  [[nodiscard]] Sight look_sensor(const Eigen::Vector3f& p, float tolerance_m) const {
+    if (p.z() < kNearest) return Sight::unseen;
+    const float inverse_z = 1.0F / p.z();
+    const float u = p.x() * inverse_z * fx_ + cx_, v = p.y() * inverse_z * fy_ + cy_;
+    if (!(u >= 0 && v >= 0 && u < width_f_ && v < height_f_)) return Sight::unseen;
+    const Band& band = bands_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
+    if (band.far == 0) return Sight::unseen;
+    const float slack = tolerance_m + 0.01F * p.z();
+    if (p.z() < band.near - slack) return p.z() < band.near - 2 * slack ? Sight::conflict : Sight::agrees;
+    return p.z() <= band.near + slack || (p.z() >= band.far - slack && p.z() <= band.far + slack) ? Sight::agrees
+                                                                                               : Sight::behind;
+  }
+
+  [[nodiscard]] bool empty() const { return bands_.empty(); }
+
+ private:
+  static constexpr float kNearest = 0.2F;
+  struct Band {
+    float near = 0, far = 0;  ///< metres; far 0: nothing measured
+  };
+  void prepare(const Camera& small);
+  void widen();  ///< takes in the bands of the four neighbours
+
+  Eigen::Isometry3f T_sensor_world_ = Eigen::Isometry3f::Identity();
+  int width_ = 0, height_ = 0;
+  float width_f_ = 0, height_f_ = 0, fx_ = 1, fy_ = 1, cx_ = 0, cy_ = 0;  ///< centre shifted by half a pixel
+  std::vector<Band> bands_;
+};
+
+}  // namespace liloc

@@ -1,0 +1,59 @@
+#include "common/registration/target.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include "common/geometry/voxel.hpp"
+#include "common/registration/normals.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr double kFineField_m = 0.1, kCoarseField_m = 0.2;
+
+/// About `count` points spread evenly in space: the coarsest voxel grid that still has so many, then a random cut.
+Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, std::uint64_t seed) {
+  Cloud thin = cloud;
+  for (double size = 8 * voxel_size_m; size > voxel_size_m; size *= 0.75) {
+    thin = voxel_downsample(cloud, size);
+    if (thin.size() >= count) break;
+  }
+  std::mt19937_64 rng(seed);
+  while (thin.size() > count) {
+    const std::size_t i = rng() % thin.size();
+    thin.points[i] = thin.points.back();
+    thin.points.pop_back();
+    if (thin.normals.empty()) continue;
+    thin.normals[i] = thin.normals.back();
+    thin.normals.pop_back();
+  }
+  return thin;
+}
+
+}  // namespace
+
+Target make_target(Cloud cloud_map, std::vector<SightView> views, const TargetOptions& options) {
+  Target target;
+  target.cloud = std::move(cloud_map);
+  target.views = std::move(views);
+  target.coarse = voxel_downsample(target.cloud, 2 * options.voxel_size_m);
+  target.nearest = NearestGrid(target.cloud.points, options.voxel_size_m, 2.5 * options.voxel_size_m);
+  target.nearest_coarse = NearestGrid(target.coarse.points, 2 * options.voxel_size_m, 0.35);
+  if (options.with_fields) {
+    target.field_coarse = ScoreField(target.coarse, target.views, kCoarseField_m, 0.13);
+    target.field_fine = ScoreField(target.coarse, target.views, kFineField_m, 0.08);
+  }
+  return target;
+}
+
+Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options) {
+  Query query;
+  query.cloud = with_normals(voxel_downsample(cloud_sensor, options.voxel_size_m), Eigen::Vector3f::Zero(),
+                             {2.5 * options.voxel_size_m, 5});
+  query.medium = voxel_downsample(query.cloud, 2 * options.voxel_size_m);
+  query.sparse = spread_points(query.cloud, options.sparse_points, options.voxel_size_m, options.seed);
+  if (camera != nullptr) query.view = SightView::from_cloud(query.cloud, *camera, options.voxel_size_m, 80);
+  return query;
+}
+
+}  // namespace liloc

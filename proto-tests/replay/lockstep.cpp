@@ -1,0 +1,181 @@
+#include "proto-tests/replay/lockstep.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "client/src/engine.hpp"
+#include "client/src/trace.hpp"
+#include "proto-tests/replay/prepare.hpp"
+#include "proto-tests/replay/processes.hpp"
+#include "proto-tests/replay/timeline.hpp"
+#include "server/localization/localizer.hpp"
+
+namespace liloc::replay {
+namespace {
+
+constexpr StampNs kHold_ns = from_ms(100);  // the farthest a ceiling frame may be from its request
+
+struct Device {
+  Engine engine;
+  TraceWriter trace;
+  std::deque<SpotRequest> held;  ///< asked, not yet answered; oldest first
+};
+
+EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions& options) {
+  EngineOptions engine;
+  engine.client_id = device.info.id;
+  engine.camera = device.info.camera;
+  engine.voxel_size_m = options.voxel_m;
+  engine.interval_ns = from_ms(options.interval_ms);
+  engine.local = *local_method_from(options.local);
+  if (!device.imu.empty()) engine.T_imu_sensor = device.info.T_imu_sensor;
+  engine.still_seconds = device.info.still_seconds;
+  engine.cold = options.cold;
+  engine.seed = options.seed;
+  return engine;
+}
+
+GlobalCloudOptions cloud_options(const ReplayOptions& options) {
+  GlobalCloudOptions cloud;
+  cloud.snapshot.voxel_size_m = options.voxel_m;
+  return cloud;
+}
+
+LocalizerOptions localizer_options(const ReplayOptions& options) {
+  LocalizerOptions localizer;
+  localizer.method = *method_from(options.method);
+  localizer.voxel_size_m = options.voxel_m;
+  localizer.sampling = options.sampling;
+  localizer.seed = options.seed;
+  localizer.threads = options.threads;
+  return localizer;
+}
+
+class Lockstep {
+ public:
+  Lockstep(const Recording& recording, const ReplayOptions& options)
+      : recording_(recording),
+        cloud_(recording.site, cloud_options(options)),
+        localizer_(cloud_, localizer_options(options)),
+        newest_ceiling_ns_(recording.lidars.size(), std::numeric_limits<StampNs>::min()) {}
+
+  Status open(const ReplayOptions& options) {
+    for (const DeviceRecording& device : recording_.devices) {
+      devices_.push_back(
+          std::make_unique<Device>(Device{Engine(engine_options(device, options)), TraceWriter(), {}}));
+      if (auto status = devices_.back()->trace.open(trace_folder(options, device.info.id)); !status)
+        return status;
+    }
+    return {};
+  }
+
+  Status step(const Event& event, FrameReader& frames) {
+    answer_due(event.stamp_ns);
+    switch (event.kind) {
+      case Event::Kind::ceiling:
+        add_ceiling(event, frames.next());
+        break;
+      case Event::Kind::imu:
+        add_imu(event);
+        break;
+      case Event::Kind::device:
+        return add_device(event, frames.next());
+    }
+    return {};
+  }
+
+  Status close() {
+    answer_due(std::numeric_limits<StampNs>::max());
+    for (auto& device : devices_)
+      if (auto status = device->trace.close(); !status) return status;
+    return {};
+  }
+
+  RunFacts facts;
+
+ private:
+  void skip(const std::string& why) { facts.skipped.push_back(why); }
+
+  void add_ceiling(const Event& event, Result<DepthImage> image) {
+    ++facts.ceiling_frames;
+    if (!image) return skip(image.error().message);
+    if (auto status = cloud_.add_depth(event.source, std::move(*image)); !status)
+      return skip(status.error().message);
+    newest_ceiling_ns_[event.source] = event.stamp_ns;
+    answer_due(event.stamp_ns);
+  }
+
+  void add_imu(const Event& event) {
+    const ImuSample& sample = recording_.devices[event.source].imu[event.index];
+    if (auto status = devices_[event.source]->engine.add_imu(sample); !status) skip(status.error().message);
+  }
+
+  Status add_device(const Event& event, const Result<DepthImage>& image) {
+    ++facts.device_frames;
+    if (!image) {
+      skip(image.error().message);
+      return {};
+    }
+    Device& device = *devices_[event.source];
+    const auto frame = device.engine.add_depth(*image);
+    if (!frame) {
+      skip(frame.error().message);
+      return {};
+    }
+    if (auto status = device.trace.on_frame(*frame); !status) return status;
+    if (auto request = device.engine.take_request()) device.held.push_back(std::move(*request));
+    answer_due(event.stamp_ns);
+    return {};
+  }
+
+  /// Answers what need not or must not wait longer, at recorded time `now_ns`.
+  void answer_due(StampNs now_ns) {
+    const StampNs seen_by_all_ns =
+        newest_ceiling_ns_.empty() ? std::numeric_limits<StampNs>::max()
+                                   : *std::min_element(newest_ceiling_ns_.begin(), newest_ceiling_ns_.end());
+    for (auto& device : devices_)
+      while (!device->held.empty()) {
+        const SpotRequest& request = device->held.front();
+        if (seen_by_all_ns < request.stamp_ns && now_ns < request.stamp_ns + kHold_ns) break;
+        const SpotReply reply = localizer_.locate(request);
+        device->engine.add_reply(reply);
+        device->trace.on_reply(reply, request);
+        device->held.pop_front();
+      }
+  }
+
+  const Recording& recording_;
+  GlobalCloud cloud_;
+  Localizer localizer_;
+  std::vector<std::unique_ptr<Device>> devices_;  ///< in the order of the recording
+  std::vector<StampNs> newest_ceiling_ns_;        ///< per LiDAR
+};
+
+}  // namespace
+
+Result<RunFacts> run_lockstep(const Recording& recording, const ReplayOptions& options,
+                              const Progress& progress) {
+  const Stopwatch watch;
+  const std::vector<Event> events = timeline(recording);
+  FrameReader frames(recording, events);
+  Lockstep lockstep(recording, options);
+  if (auto status = lockstep.open(options); !status) return tl::unexpected(status.error());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (auto status = lockstep.step(events[i], frames); !status) return tl::unexpected(status.error());
+    if (stop_requested()) return fail("replay: stopped by a signal at {} of {} events", i, events.size());
+    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(events.size()));
+  }
+  if (auto status = lockstep.close(); !status) return tl::unexpected(status.error());
+
+  RunFacts facts = std::move(lockstep.facts);
+  facts.recording = recording.root.filename().string();
+  facts.mode = "lockstep";
+  facts.seed = options.seed;
+  facts.wall_s = watch.elapsed_ms() / 1e3;
+  facts.recorded_s = events.empty() ? 0 : to_seconds(events.back().stamp_ns - events.front().stamp_ns);
+  return facts;
+}
+
+}  // namespace liloc::replay

@@ -1,0 +1,16 @@
+#pragma once
+#include "common/recording/recording.hpp"
+#include "proto-tests/replay/options.hpp"
+#include "proto-tests/replay/report.hpp"
+
+namespace liloc::replay {
+
+/// Runs server and clients in this process, without DDS and as fast as they can, in the order of the stamps:
+/// the same recording, options and seed give the same answers. A request is answered once every LiDAR has
+/// delivered a frame of its time or later, or after 100 ms of recorded time; later frames profit from it,
+/// earlier ones do not. Writes the traces into OUT, which must be prepared. Errors: the traces cannot be
+/// written, or a stop signal came.
+[[nodiscard]] Result<RunFacts> run_lockstep(const Recording& recording, const ReplayOptions& options,
+                                            const Progress& progress);
+
+}  // namespace liloc::replay

@@ -1,0 +1,32 @@
+#include "proto-tests/replay/options.hpp"
+
+#include <cmath>
+
+#include "client/src/engine.hpp"
+#include "server/localization/localizer.hpp"
+
+namespace liloc::replay {
+namespace {
+
+Status in_range(std::string_view option, double value, double low, double high) {
+  if (std::isfinite(value) && value >= low && value <= high) return {};
+  return fail("--{}: {} is out of range; give {} to {}", option, value, low, high);
+}
+
+}  // namespace
+
+Result<ReplayOptions> ReplayOptions::validated() const {
+  for (const Status& status :
+       {in_range("interval-ms", interval_ms, 50, 60000), in_range("voxel", voxel_m, 0.01, 0.5),
+        in_range("sampling", sampling, 0.01, 1), in_range("threads", threads, 1, 64)})
+    if (!status) return tl::unexpected(status.error());
+  if (const auto known = method_from(method); !known) return tl::unexpected(known.error());
+  if (const auto known = local_method_from(local); !known) return tl::unexpected(known.error());
+  if (features == "learned")
+    return fail("--features: learned needs a trained model, and this version has none; use --features fpfh");
+  if (features != "fpfh") return fail("--features: '{}' is unknown; use fpfh", features);
+  if (out.empty()) return fail("--out: missing; name the folder for the results");
+  return *this;
+}
+
+}  // namespace liloc::replay

@@ -1,0 +1,32 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/base/result.hpp"
+
+namespace liloc::replay {
+
+/// The command line of `liloc replay`, one field per option.
+struct ReplayOptions {
+  std::filesystem::path recording, out;
+  bool lockstep = false;
+  std::uint64_t seed = 1;
+  double interval_ms = 800, voxel_m = 0.05;
+  std::string method = "liloc", local = "cloud", features = "fpfh";
+  double sampling = 0.5;
+  std::vector<std::string> devices;  ///< ids to replay; empty: all of the recording
+  bool cold = false;
+  int threads = 1;                 ///< of the server, per request
+  std::filesystem::path programs;  ///< folder of liloc-server and liloc-client; used without lockstep
+
+  /// Errors name the option, its value and what it may be.
+  [[nodiscard]] Result<ReplayOptions> validated() const;
+};
+
+/// Called with the share of the work that is done, 0..1, from the thread that runs the replay.
+using Progress = std::function<void(double share)>;
+
+}  // namespace liloc::replay

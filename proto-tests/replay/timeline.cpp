@@ -1,0 +1,61 @@
+#include "proto-tests/replay/timeline.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace liloc::replay {
+namespace {
+
+template <class Items>
+void add_events(std::vector<Event>& events, Event::Kind kind, std::size_t source, const Items& items) {
+  for (std::size_t i = 0; i < items.size(); ++i) events.push_back({items[i].stamp_ns, kind, source, i});
+}
+
+}  // namespace
+
+std::vector<Event> timeline(const Recording& recording) {
+  std::vector<Event> events;
+  for (std::size_t i = 0; i < recording.lidars.size(); ++i)
+    add_events(events, Event::Kind::ceiling, i, recording.lidars[i].depth);
+  for (std::size_t i = 0; i < recording.devices.size(); ++i) {
+    add_events(events, Event::Kind::imu, i, recording.devices[i].imu);
+    add_events(events, Event::Kind::device, i, recording.devices[i].depth);
+  }
+  std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
+    return std::tie(a.stamp_ns, a.kind, a.source, a.index) < std::tie(b.stamp_ns, b.kind, b.source, b.index);
+  });
+  return events;
+}
+
+FrameReader::FrameReader(const Recording& recording, const std::vector<Event>& events, std::size_t ahead)
+    : recording_(recording),
+      events_(events),
+      ahead_(std::max<std::size_t>(ahead, 1)),
+      worker_([this](const std::stop_token& stop) { run(stop); }) {}
+
+void FrameReader::run(const std::stop_token& stop) {
+  for (const Event& event : events_) {
+    if (event.kind == Event::Kind::imu) continue;
+    const bool ceiling = event.kind == Event::Kind::ceiling;
+    const DepthFile& file = ceiling ? recording_.lidars[event.source].depth[event.index]
+                                    : recording_.devices[event.source].depth[event.index];
+    auto image = read_depth(file, ceiling ? recording_.lidars[event.source].info.camera
+                                          : recording_.devices[event.source].info.camera);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, stop, [this] { return decoded_.size() < ahead_; });
+    if (stop.stop_requested()) return;
+    decoded_.push_back(std::move(image));
+    changed_.notify_all();
+  }
+}
+
+Result<DepthImage> FrameReader::next() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return !decoded_.empty(); });
+  Result<DepthImage> image = std::move(decoded_.front());
+  decoded_.pop_front();
+  changed_.notify_all();
+  return image;
+}
+
+}  // namespace liloc::replay

@@ -19,12 +19,12 @@ struct EngineOptions {
   Camera camera;
   double min_range_m = 0.25, max_range_m = 8.5;
   double voxel_size_m = 0.05;
-  StampNs interval_ns = from_ms(800);       ///< upper bound between global registrations (paper, section 5.3)
-  StampNs reply_timeout_ns = from_ms(4000); ///< a request without an answer for so long counts as unanswered
+  StampNs interval_ns = from_ms(800);        ///< upper bound between global registrations (paper, section 5.3)
+  StampNs reply_timeout_ns = from_ms(4000);  ///< a request without an answer for so long counts as unanswered
   LocalMethod local = LocalMethod::cloud;
-  std::optional<Pose> T_imu_sensor;         ///< there is an IMU exactly where this is set
-  double still_seconds = 0;                 ///< the device stands still for so long at the start
-  bool cold = false;                        ///< each request is to be answered on its own
+  std::optional<Pose> T_imu_sensor;  ///< there is an IMU exactly where this is set
+  double still_seconds = 0;          ///< the device stands still for so long at the start
+  bool cold = false;                 ///< each request is to be answered on its own
   std::uint64_t seed = 1;
 };
 

@@ -70,7 +70,8 @@ void LocalMap::rebuild(std::size_t slots) {
 }
 
 void LocalMap::add(std::uint64_t key, const Surfel& surfel, StampNs stamp_ns) {
-  if ((cells_.size() + 1) * 2 > keys_.size()) rebuild(alive_ * 3 > keys_.size() ? keys_.size() * 2 : keys_.size());
+  if ((cells_.size() + 1) * 2 > keys_.size())
+    rebuild(alive_ * 3 > keys_.size() ? keys_.size() * 2 : keys_.size());
   std::size_t slot = (key * 0x9E3779B97F4A7C15ULL) >> shift_;
   while (keys_[slot] != kFree) slot = (slot + 1) & (keys_.size() - 1);
   keys_[slot] = key;

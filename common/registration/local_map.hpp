@@ -9,15 +9,15 @@
 namespace liloc {
 
 struct LocalMapOptions {
-  double cell_m = 0.10;            ///< one surfel per cell
+  double cell_m = 0.10;              ///< one surfel per cell
   std::size_t max_surfels = 40'000;  ///< memory bound (about 100 bytes each); the longest unseen go first
-  float full_weight = 800;         ///< points after which a surfel stays as it is: early ones anchor the odometry
+  float full_weight = 800;  ///< points after which a surfel stays as it is: early ones anchor the odometry
   StampNs trust_after_ns = from_ms(500);  ///< younger surfels may be people: they count less
-  int refuted_after = 2;           ///< views through a surfel that remove it
+  int refuted_after = 2;                  ///< views through a surfel that remove it
 };
 
-/// What the device has seen around it, in its odometry frame: a surfel per cell, bounded in memory. What moves is
-/// removed as soon as a later frame looks through it. Not thread-safe while it changes.
+/// What the device has seen around it, in its odometry frame: a surfel per cell, bounded in memory. What moves
+/// is removed as soon as a later frame looks through it. Not thread-safe while it changes.
 class LocalMap {
  public:
   struct Cell {

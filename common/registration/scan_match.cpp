@@ -65,7 +65,8 @@ float kernel_width(const std::vector<Pair>& pairs, const ScanMatchOptions& optio
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   const float width = 3.0F * 1.4826F * *middle;
-  return std::clamp(width, 2.0F * static_cast<float>(options.sensor_sd_m), static_cast<float>(options.kernel_max_m));
+  return std::clamp(width, 2.0F * static_cast<float>(options.sensor_sd_m),
+                    static_cast<float>(options.kernel_max_m));
 }
 
 struct Normal {

@@ -6,8 +6,8 @@
 
 namespace liloc {
 
-/// Where the sensor is believed to be before the match, and how sure that is. Its uncertainty enters the solution
-/// as a prior: where the scene says nothing, the guess decides.
+/// Where the sensor is believed to be before the match, and how sure that is. Its uncertainty enters the
+/// solution as a prior: where the scene says nothing, the guess decides.
 struct MotionGuess {
   Pose T_map_sensor = Pose::Identity();
   double sd_rad = 0.03;  ///< each axis
@@ -16,30 +16,30 @@ struct MotionGuess {
 
 struct ScanMatchOptions {
   int max_iterations = 12;
-  std::size_t max_surfels = 1500;   ///< of the frame; more are thinned evenly
-  double min_flatness = 0.4;        ///< surfels below have no trustworthy normal
+  std::size_t max_surfels = 1500;  ///< of the frame; more are thinned evenly
+  double min_flatness = 0.4;       ///< surfels below have no trustworthy normal
   double stop_rad = 2e-5, stop_m = 5e-5;
-  double sensor_sd_m = 0.006;       ///< of a surfel's distance to a plane: noise, calibration and model
-  double noise_per_m2 = 0.0008;     ///< and what grows with the square of the range
-  double kernel_max_m = 0.10;       ///< farther from its plane, a surfel hardly counts
-  double independent_surfels = 250; ///< neighbours err together: no more than so many count as independent
-  double observed_share = 0.004;    ///< a direction with less of the information than so is left to the guess
+  double sensor_sd_m = 0.006;        ///< of a surfel's distance to a plane: noise, calibration and model
+  double noise_per_m2 = 0.0008;      ///< and what grows with the square of the range
+  double kernel_max_m = 0.10;        ///< farther from its plane, a surfel hardly counts
+  double independent_surfels = 250;  ///< neighbours err together: no more than so many count as independent
+  double observed_share = 0.004;     ///< a direction with less of the information than so is left to the guess
 };
 
 struct ScanMatch {
   Pose T_map_sensor = Pose::Identity();
   /// Of the scene and the prior, [rotation; translation], map axes about the sensor's position.
   Matrix6d information = Matrix6d::Zero();
-  int unobserved = 0;      ///< directions left to the guess (0..6)
-  double overlap = 0;      ///< share of the used surfels with a plane within three sensor deviations, 0..1
-  double paired = 0;       ///< share of the used surfels with any plane near, 0..1
-  double rmse_m = 0;       ///< distance to the planes over the overlap
+  int unobserved = 0;  ///< directions left to the guess (0..6)
+  double overlap = 0;  ///< share of the used surfels with a plane within three sensor deviations, 0..1
+  double paired = 0;   ///< share of the used surfels with any plane near, 0..1
+  double rmse_m = 0;   ///< distance to the planes over the overlap
   int iterations = 0;
-  bool settled = false;    ///< the last step was below the stop limits
+  bool settled = false;  ///< the last step was below the stop limits
 };
 
-/// Point-to-plane registration of a frame's surfels (sensor frame) to the map, with a Geman-McClure kernel whose
-/// width follows the residuals, the guess as a prior and unobserved directions held at the guess. Pure.
+/// Point-to-plane registration of a frame's surfels (sensor frame) to the map, with a Geman-McClure kernel
+/// whose width follows the residuals, the guess as a prior and unobserved directions held at the guess. Pure.
 /// `now_ns` is the frame's stamp: surfels of the map younger than its trust limit weigh less.
 /// Errors: an empty map or frame. A poor fit is a result, not an error.
 [[nodiscard]] Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame,

@@ -6,14 +6,14 @@
 
 namespace liloc {
 
-/// A patch of surface: the points of one voxel, summed up. The mean of dozens of noisy points lies on the surface
-/// to a millimetre, which a single point does not.
+/// A patch of surface: the points of one voxel, summed up. The mean of dozens of noisy points lies on the
+/// surface to a millimetre, which a single point does not.
 struct Surfel {
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();    ///< metres
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();        ///< metres
   Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< of the points about the mean, m^2
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, towards the sensor
-  float flatness = 0;                                ///< 0 (a ball) .. 1 (a plane)
-  float count = 0;                                   ///< points
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();      ///< unit, towards the sensor
+  float flatness = 0;                                    ///< 0 (a ball) .. 1 (a plane)
+  float count = 0;                                       ///< points
 };
 
 struct SurfelOptions {

@@ -1,0 +1,206 @@
+#include "client/src/engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/src/image_thinning.hpp"
+#include "client/src/informativeness.hpp"
+#include "client/src/map_link.hpp"
+#include "client/src/odometry.hpp"
+#include "client/src/request_schedule.hpp"
+#include "common/base/log.hpp"
+#include "common/codec/codec.hpp"
+#include "common/geometry/depth.hpp"
+#include "common/geometry/voxel.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr int kSilentIntervals = 3;
+constexpr std::size_t kFewestSurfels = 60;     // a frame with fewer cannot be matched
+constexpr std::size_t kMostLocalPoses = 1000;  // memory bound while no request leaves
+constexpr double kOdomSdM = 0.01, kOdomSdRad = 0.005, kOdomSdShare = 0.01;  // floor, and share of path and turn
+
+OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
+  OdometryOptions options;
+  options.method = o.local;
+  options.camera = thinned(o.camera, thinning);
+  options.max_range_m = o.max_range_m;
+  options.T_imu_sensor = o.T_imu_sensor;
+  options.cell_m = 2 * o.voxel_size_m;
+  options.seed = o.seed;
+  return options;
+}
+
+}  // namespace
+
+Result<LocalMethod> local_method_from(std::string_view name) {
+  if (name == "cloud") return LocalMethod::cloud;
+  if (name == "inertial") return LocalMethod::inertial;
+  if (name == "dead-reckoning") return LocalMethod::dead_reckoning;
+  return fail("local method is '{}'; must be cloud, inertial or dead-reckoning", name);
+}
+
+struct Engine::Impl {
+  explicit Impl(EngineOptions o)
+      : options(std::move(o)),
+        thinning(thinning_for(options.camera)),
+        odometry(odometry_options(options, thinning)),
+        schedule(options.interval_ns, options.reply_timeout_ns),
+        link(kSilentIntervals * options.interval_ns) {
+    if (options.T_imu_sensor) imu.emplace(ImuTrackOptions{.still_seconds = options.still_seconds});
+    if (!imu && options.local != LocalMethod::cloud)
+      log::warning("local registration without an IMU: the cloud method is used instead");
+  }
+
+  [[nodiscard]] DepthOptions depth_options() const {
+    return {.min_range_m = options.min_range_m, .max_range_m = options.max_range_m};
+  }
+  [[nodiscard]] Status check(const DepthImage& image) const;
+  [[nodiscard]] Result<FrameResult> add_depth(const DepthImage& image);
+  void note_motion(const OdometryStep& step);
+  [[nodiscard]] Result<SpotRequest> make_request(const DepthImage& image, const OdometryStep& step);
+
+  EngineOptions options;
+  int thinning;
+  std::optional<ImuTrack> imu;
+  Informativeness informativeness;
+  Odometry odometry;
+  RequestSchedule schedule;
+  MapLink link;
+  StampNs last_ns = 0;
+  bool started = false;
+  std::uint64_t next_seq = 1;
+  std::uint32_t segment = 0;
+  std::vector<LocalPose> local_poses;  ///< since the last request
+  Pose T_odom_last = Pose::Identity();
+  double path_m = 0, turned_rad = 0;  ///< since the last request
+  std::optional<SpotRequest> request;
+};
+
+Status Engine::Impl::check(const DepthImage& image) const {
+  const Camera& c = options.camera;
+  if (image.width != c.width || image.height != c.height)
+    return fail("depth image is {}x{}, the camera {}x{}: pass images of the camera's size", image.width,
+                image.height, c.width, c.height);
+  if (image.units.size() != static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height))
+    return fail("depth image has {} values, {}x{} needs {}", image.units.size(), c.width, c.height,
+                c.width * c.height);
+  if (started && image.stamp_ns <= last_ns)
+    return fail("depth stamp {} is not newer than the last one ({}): frame ignored", image.stamp_ns, last_ns);
+  return {};
+}
+
+void Engine::Impl::note_motion(const OdometryStep& step) {
+  if (step.segment != segment) {  // poses of the old segment say nothing about the new one
+    local_poses.clear();
+    path_m = turned_rad = 0;
+    segment = step.segment;
+  } else if (started) {
+    path_m += distance_m(step.T_odom_sensor, T_odom_last);
+    turned_rad += angle_between_rad(step.T_odom_sensor, T_odom_last);
+  }
+  T_odom_last = step.T_odom_sensor;
+}
+
+Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const OdometryStep& step) {
+  const auto cloud = depth_to_cloud(image, options.camera, depth_options());
+  if (!cloud) return tl::unexpected(cloud.error());
+  auto lpc = encode(voxel_downsample(*cloud, options.voxel_size_m));
+  if (!lpc) return tl::unexpected(lpc.error());
+  SpotRequest r;
+  r.client_id = options.client_id;
+  r.seq = next_seq++;
+  r.stamp_ns = image.stamp_ns;
+  r.odom_segment = step.segment;
+  r.T_odom_sensor = step.T_odom_sensor;
+  r.odom_sd_rad = std::hypot(kOdomSdRad + kOdomSdShare * turned_rad, step.sd_rad);
+  r.odom_sd_m = std::hypot(kOdomSdM + kOdomSdShare * path_m, step.sd_m);
+  r.local_poses = std::exchange(local_poses, {});
+  r.lpc = std::move(*lpc);
+  r.voxel_size_m = options.voxel_size_m;
+  r.view = {options.camera, options.min_range_m, options.max_range_m};
+  if (imu) {
+    const auto up_imu = imu->up(image.stamp_ns);
+    if (up_imu) r.up_sensor = options.T_imu_sensor->linear().transpose() * *up_imu;
+    r.up_sd_rad = imu->up_sd_rad();
+  }
+  r.cold = options.cold;
+  path_m = turned_rad = 0;
+  return r;
+}
+
+Result<FrameResult> Engine::Impl::add_depth(const DepthImage& image) {
+  if (const Status ok = check(image); !ok) return tl::unexpected(ok.error());
+  const Stopwatch watch;
+  const FrameSpread spread =
+      informativeness.judge(image, options.camera, options.min_range_m, options.max_range_m);
+  const DepthImage small = thinned(image, thinning);
+  const auto cloud = depth_to_cloud(small, thinned(options.camera, thinning), depth_options());
+  if (!cloud) return tl::unexpected(cloud.error());
+  const std::vector<Surfel> surfels =
+      extract_surfels(*cloud, Eigen::Vector3f::Zero(), {.size_m = 2 * options.voxel_size_m});
+  const bool informative = spread.informative() && surfels.size() >= kFewestSurfels;
+  const OdometryStep step = odometry.step(small, surfels, informative, imu ? &*imu : nullptr);
+  note_motion(step);
+  if (local_poses.size() >= kMostLocalPoses) local_poses.erase(local_poses.begin());
+  local_poses.push_back({image.stamp_ns, step.T_odom_sensor, informative});
+  started = true;
+  last_ns = image.stamp_ns;
+
+  FrameResult frame;
+  frame.stamp_ns = image.stamp_ns;
+  frame.informative = informative;
+  frame.method = step.method;
+  frame.converged = step.converged;
+  frame.T_odom_sensor = step.T_odom_sensor;
+  frame.odom_segment = step.segment;
+  if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
+  frame.latency_ms = watch.elapsed_ms();
+
+  for (const std::uint64_t seq : schedule.take_unanswered(image.stamp_ns))
+    log::warning("{}: request {} was not answered within {:.1f} s", options.client_id, seq,
+                 to_seconds(options.reply_timeout_ns));
+  if (schedule.due(image.stamp_ns, informative)) {
+    auto made = make_request(image, step);
+    if (made) {
+      schedule.sent(made->seq, made->stamp_ns);
+      request = std::move(*made);
+    } else {
+      log::warning("{}: frame {} is not sent: {}", options.client_id, image.stamp_ns, made.error().message);
+    }
+  }
+  return frame;
+}
+
+Engine::Engine(EngineOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+Engine::~Engine() = default;
+
+Status Engine::add_imu(const ImuSample& sample) {
+  if (!impl_->imu)
+    return fail("{}: IMU sample without T_imu_sensor: set it in the options", impl_->options.client_id);
+  return impl_->imu->add(sample);
+}
+
+Result<FrameResult> Engine::add_depth(const DepthImage& image) {
+  return impl_->add_depth(image);
+}
+
+std::optional<SpotRequest> Engine::take_request() {
+  return std::exchange(impl_->request, std::nullopt);
+}
+
+void Engine::add_reply(const SpotReply& reply) {
+  impl_->schedule.answered(reply.seq);
+  impl_->link.add(reply, impl_->segment);
+}
+
+std::optional<Pose> Engine::T_map_odom() const {
+  return impl_->link.T_map_odom();
+}
+
+Tracking Engine::tracking() const {
+  return impl_->link.tracking(impl_->last_ns, impl_->segment);
+}
+
+}  // namespace liloc

@@ -1,0 +1,67 @@
+#pragma once
+#include <string>
+
+#include "client/src/engine.hpp"
+#include "client/src/imu_track.hpp"
+#include "common/registration/scan_match.hpp"
+
+namespace liloc {
+
+struct OdometryOptions {
+  LocalMethod method = LocalMethod::cloud;
+  Camera camera;  ///< of the images given to `step`
+  double max_range_m = 8.5;
+  std::optional<Pose> T_imu_sensor;
+  double cell_m = 0.10;
+  StampNs coast_ns = from_ms(2000);  ///< longest stretch bridged by the guess; half of it without an IMU
+  double min_overlap = 0.35;         ///< of the frame with the map, below which a match is not believed
+  double keyframe_m = 0.05, keyframe_rad = 0.035;
+  StampNs keyframe_ns = from_ms(300);  ///< motion or time since the last keyframe that makes the next one
+  std::uint64_t seed = 1;
+};
+
+/// What the odometry says of a frame.
+struct OdometryStep {
+  Pose T_odom_sensor = Pose::Identity();
+  std::string method;  ///< "first", "icp", "ransac", "inertial", "guess"
+  bool converged = true;
+  std::uint32_t segment = 0;
+  double overlap = 0;           ///< of the match; 0 for a guess
+  double sd_rad = 0, sd_m = 0;  ///< of the motion since the previous frame
+};
+
+/// Local registration: each frame against the map of the device's surroundings, from a guess by the IMU or by
+/// constant velocity. Where the scene is hidden the guess carries on for a bounded time; longer gaps start a
+/// new segment with an empty map. Not thread-safe.
+class Odometry {
+ public:
+  explicit Odometry(const OdometryOptions& options);
+
+  /// `usable`: the frame may be matched (not blocked). `imu` may be null.
+  [[nodiscard]] OdometryStep step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,
+                                  ImuTrack* imu);
+  [[nodiscard]] const LocalMap& map() const { return map_; }
+
+ private:
+  [[nodiscard]] MotionGuess guess(StampNs stamp_ns, const ImuTrack* imu);
+  [[nodiscard]] bool believable(const ScanMatch& match, const MotionGuess& guess) const;
+  [[nodiscard]] std::optional<ScanMatch> match(const std::vector<Surfel>& frame, const MotionGuess& guess,
+                                               StampNs stamp_ns, OdometryStep& step) const;
+  void accept(const ScanMatch& match, StampNs stamp_ns, ImuTrack* imu, OdometryStep& step);
+  void coast(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step);
+  void remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor);
+
+  OdometryOptions options_;
+  LocalMap map_;
+  std::uint32_t segment_ = 0;
+  bool started_ = false;
+  StampNs last_ns_ = 0;      ///< of the last frame
+  StampNs anchored_ns_ = 0;  ///< of the last matched frame
+  StampNs keyframe_ns_ = 0;
+  Pose T_odom_last_ = Pose::Identity(), T_odom_keyframe_ = Pose::Identity();
+  Eigen::Vector3d velocity_odom_ = Eigen::Vector3d::Zero();      ///< of the sensor, m/s
+  Eigen::Vector3d velocity_imu_odom_ = Eigen::Vector3d::Zero();  ///< of the IMU after the guess, m/s
+  Eigen::Vector3d turn_rate_ = Eigen::Vector3d::Zero();          ///< sensor axes, rad/s
+};
+
+}  // namespace liloc

@@ -1,0 +1,161 @@
+// Runs the client's engine without a server over recordings and says how far its odometry drifts.
+//   liloc_odometry_bench [--local cloud|inertial|dead-reckoning] [--frames] REC...
+// Drift is the judge's figure: error of the relative pose from the first to the last frame, in per cent of the
+// path.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "client/src/engine.hpp"
+#include "common/base/log.hpp"
+#include "common/recording/recording.hpp"
+
+namespace liloc {
+namespace {
+
+struct Options {
+  LocalMethod local = LocalMethod::cloud;
+  bool frames = false, verbose = false;
+  int every = 1;
+  std::vector<std::string> recordings;
+};
+
+struct Run {
+  std::vector<FrameResult> frames;
+  std::vector<Pose> truth;
+  int requests = 0;
+  double worst_up_deg = -1;
+  std::size_t lpc_bytes = 0;
+};
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
+}
+
+Result<Run> run_device(const DeviceRecording& device, const Options& options) {
+  const auto truth = read_ground_truth(device);
+  if (!truth) return tl::unexpected(truth.error());
+  EngineOptions eo;
+  eo.client_id = device.info.id;
+  eo.camera = device.info.camera;
+  eo.local = options.local;
+  if (!device.imu.empty()) eo.T_imu_sensor = device.info.T_imu_sensor;
+  eo.still_seconds = device.info.still_seconds;
+  Engine engine(eo);
+  Run run;
+  std::size_t next_imu = 0;
+  for (std::size_t i = 0; i < device.depth.size(); i += static_cast<std::size_t>(options.every)) {
+    const auto image = read_depth(device.depth[i], device.info.camera);
+    if (!image) return tl::unexpected(image.error());
+    for (; next_imu < device.imu.size() && device.imu[next_imu].stamp_ns <= image->stamp_ns + from_ms(5);
+         ++next_imu)
+      if (const auto ok = engine.add_imu(device.imu[next_imu]); !ok) return tl::unexpected(ok.error());
+    auto frame = engine.add_depth(*image);
+    if (!frame) return tl::unexpected(frame.error());
+    run.frames.push_back(std::move(*frame));
+    run.truth.push_back((*truth)[i].T_map_sensor);
+    if (const auto request = engine.take_request()) {
+      ++run.requests;
+      run.lpc_bytes += request->lpc.bytes.size();
+      if (request->up_sensor) {
+        const Eigen::Vector3d up_true = run.truth.back().linear().transpose() * Eigen::Vector3d::UnitZ();
+        run.worst_up_deg = std::max(
+            run.worst_up_deg, degrees(std::acos(std::clamp(up_true.dot(*request->up_sensor), -1.0, 1.0))));
+      }
+    }
+  }
+  return run;
+}
+
+void report(const std::string& name, const Run& run, const Options& options) {
+  const auto& f = run.frames;
+  double path = 0, good = 0;
+  std::vector<double> latency, step_mm;
+  const auto error = [&](std::size_t i, std::size_t j) {
+    return (run.truth[i].inverse() * run.truth[j]).inverse() *
+           (f[i].T_odom_sensor.inverse() * f[j].T_odom_sensor);
+  };
+  int icp = 0, ransac = 0, guess = 0, dull = 0;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    latency.push_back(f[i].latency_ms);
+    icp += f[i].method == "icp" || f[i].method == "inertial";
+    ransac += f[i].method == "ransac";
+    guess += f[i].method == "guess";
+    dull += !f[i].informative;
+    if (options.frames) {
+      const Pose E = error(0, i);
+      fmt::print("{:4d} {:8} inf {} seg {} err {:.1f} mm {:.3f} deg\n", i, f[i].method, f[i].informative,
+                 f[i].odom_segment, 1e3 * E.translation().norm(), degrees(rotation_angle_rad(E)));
+    }
+    if (i == 0) continue;
+    path += distance_m(run.truth[i], run.truth[i - 1]);
+    const Pose E = error(i - 1, i);
+    step_mm.push_back(1e3 * E.translation().norm());
+    good += degrees(rotation_angle_rad(E)) <= 3 && E.translation().norm() <= 0.1;
+  }
+  const Pose end = error(0, f.size() - 1);
+  fmt::print(
+      "{:28} path {:5.2f} m  end {:5.1f} mm {:5.2f} %  {:5.2f} deg  pairs {:.3f} (median {:.1f} mm)  "
+      "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B\n",
+      name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
+      degrees(rotation_angle_rad(end)), good / static_cast<double>(f.size() - 1), quantile(step_mm, 0.5),
+      quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess, dull, f.back().odom_segment + 1,
+      run.worst_up_deg, run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)));
+}
+
+int run_all(const Options& options) {
+  for (const std::string& root : options.recordings) {
+    const auto recording = open_recording(root);
+    if (!recording) {
+      fmt::print(stderr, "{}\n", recording.error().message);
+      return 1;
+    }
+    for (const DeviceRecording& device : recording->devices) {
+      const auto run = run_device(device, options);
+      if (!run) {
+        fmt::print(stderr, "{}\n", run.error().message);
+        return 1;
+      }
+      report(recording->root.filename().string() + "/" + device.info.id, *run, options);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace liloc
+
+int main(int argc, char** argv) {
+  liloc::Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string arg = argv[i];
+    if (arg == "--frames") {
+      options.frames = true;
+    } else if (arg == "--verbose") {
+      liloc::log::set_sink([](liloc::log::Level, std::string_view line) { fmt::print(stderr, "{}\n", line); });
+    } else if (arg == "--every" && i + 1 < argc) {
+      options.every = std::max(1, std::atoi(argv[++i]));
+    } else if (arg == "--local" && i + 1 < argc) {
+      const auto method = liloc::local_method_from(argv[++i]);
+      if (!method) {
+        fmt::print(stderr, "{}\n", method.error().message);
+        return 2;
+      }
+      options.local = *method;
+    } else {
+      options.recordings.push_back(arg);
+    }
+  }
+  if (options.recordings.empty()) {
+    fmt::print(stderr,
+               "usage: liloc_odometry_bench [--local METHOD] [--every N] [--frames] [--verbose] REC...\n");
+    return 2;
+  }
+  return liloc::run_all(options);
+}

@@ -15,9 +15,9 @@ namespace liloc::wire {
 
 /// Run on the dispatcher's thread; any may be empty.
 struct ClientCallbacks {
-  std::function<void(SpotReply)> on_reply;        ///< to a request of this run of the client
-  std::function<void(bool matched)> on_server;    ///< the server came or went
-  std::function<void(std::string)> on_bad_reply;  ///< a reply that was dropped, and why
+  std::function<void(SpotReply)> on_reply = {};        ///< to a request of this run of the client
+  std::function<void(bool matched)> on_server = {};    ///< the server came or went
+  std::function<void(std::string)> on_bad_reply = {};  ///< a reply that was dropped, and why
 };
 
 class ClientLink {

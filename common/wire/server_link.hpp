@@ -34,10 +34,11 @@ struct Arrival {
 
 /// Run on the dispatcher's thread.
 struct ServerCallbacks {
-  std::function<void(Arrival)> on_request;
-  std::function<void(const std::string& client_id)> on_join;   ///< its first writer was seen
-  std::function<void(const std::string& client_id)> on_leave;  ///< its last writer is gone
-  std::function<void(std::uint64_t publication)> on_gone;  ///< this writer is gone; its handle may be forgotten
+  std::function<void(Arrival)> on_request = {};
+  std::function<void(const std::string& client_id)> on_join = {};   ///< its first writer was seen
+  std::function<void(const std::string& client_id)> on_leave = {};  ///< its last writer is gone
+  std::function<void(std::uint64_t publication)> on_gone =
+      {};  ///< this writer is gone; its handle may be forgotten
 };
 
 struct ServerLinkOptions {

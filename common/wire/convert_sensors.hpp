@@ -1,0 +1,31 @@
+#pragma once
+// Private to the room: ROS 2's sensor messages from the wire, checked, and to it.
+#include <ros2.h>
+
+#include <string>
+#include <vector>
+
+#include "common/wire/sensors.hpp"
+
+namespace liloc::wire {
+
+[[nodiscard]] Result<DepthImage> from_wire(const sensor_msgs_msg_dds__Image_& message, double depth_scale_m);
+[[nodiscard]] Result<Camera> from_wire(const sensor_msgs_msg_dds__CameraInfo_& message);
+[[nodiscard]] Result<StampedCloud> from_wire(const sensor_msgs_msg_dds__PointCloud2_& message);
+[[nodiscard]] Result<ImuSample> from_wire(const sensor_msgs_msg_dds__Imu_& message);
+
+[[nodiscard]] std_msgs_msg_dds__Header_ header_of(StampNs stamp_ns, const std::string& frame_id);
+/// Lends the image's memory.
+[[nodiscard]] sensor_msgs_msg_dds__Image_ to_wire(const DepthImage& image, const std::string& frame_id);
+[[nodiscard]] sensor_msgs_msg_dds__CameraInfo_ to_wire(const Camera& camera, StampNs stamp_ns,
+                                                       const std::string& frame_id);
+[[nodiscard]] sensor_msgs_msg_dds__Imu_ to_wire(const ImuSample& sample, const std::string& frame_id);
+
+struct PointsSample {
+  sensor_msgs_msg_dds__PointCloud2_ message{};
+  std::vector<sensor_msgs_msg_dds__PointField_> fields;
+};
+/// Lends the cloud's memory.
+[[nodiscard]] PointsSample to_wire(const Cloud& cloud_sensor, StampNs stamp_ns, const std::string& frame_id);
+
+}  // namespace liloc::wire

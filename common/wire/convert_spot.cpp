@@ -1,0 +1,213 @@
+#include "common/wire/convert_spot.hpp"
+
+#include "common/base/ids.hpp"
+#include "common/wire/convert.hpp"
+
+namespace liloc::wire {
+namespace {
+
+constexpr std::size_t kMaxLocalPoses = 256, kMaxLpcBytes = 262'144;
+
+liloc_msg_Transform to_wire(const Pose& T) {
+  const Eigen::Quaterniond q(T.linear());
+  return {{T.translation().x(), T.translation().y(), T.translation().z()}, {q.x(), q.y(), q.z(), q.w()}};
+}
+
+Result<Pose> pose_of(const liloc_msg_Transform& T, std::string_view what) {
+  return valid_pose(Eigen::Map<const Eigen::Vector3d>(T.translation_m),
+                    Eigen::Map<const Eigen::Vector4d>(T.rotation_xyzw), what);
+}
+
+/// The first error of several checks.
+template <class... Checks>
+Status all_of(Checks&&... checks) {
+  Status status;
+  ((status = status ? Status(std::forward<Checks>(checks)) : status), ...);
+  return status;
+}
+
+Status stamp_of(std::int64_t stamp_ns, std::string_view what) {
+  if (stamp_ns < 0) return fail("{} is {}, must not be negative", what, stamp_ns);
+  return {};
+}
+
+Status read_local_poses(const liloc_msg_SpotRequest& message, SpotRequest& request) {
+  request.local_poses.reserve(message.local_poses._length);
+  StampNs last = 0;
+  for (std::uint32_t i = 0; i < message.local_poses._length; ++i) {
+    const auto& local = message.local_poses._buffer[i];
+    const auto T = pose_of(local.T_odom_sensor, "local_poses.T_odom_sensor");
+    if (!T) return tl::unexpected(T.error());
+    if (local.stamp_ns < last || local.stamp_ns > message.stamp_ns)
+      return fail("local_poses[{}].stamp_ns is {}, must rise up to the request's {}", i, local.stamp_ns,
+                  message.stamp_ns);
+    last = local.stamp_ns;
+    request.local_poses.push_back({local.stamp_ns, *T, local.informative});
+  }
+  return {};
+}
+
+Status read_cloud(const liloc_msg_SpotRequest& message, SpotRequest& request) {
+  if (message.codec != 1 && message.codec != 2)
+    return fail("codec is {}, must be 1 (Draco) or 2 (octree)", message.codec);
+  if (message.lpc._length == 0) return fail("lpc is empty; send a frame's cloud");
+  request.lpc.codec = static_cast<CloudCodec>(message.codec);
+  request.lpc.bytes.assign(message.lpc._buffer, message.lpc._buffer + message.lpc._length);
+  return {};
+}
+
+Status read_view(const liloc_msg_SpotRequest& message, SpotRequest& request) {
+  const auto& c = message.camera;
+  const Camera camera{c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.depth_scale_m};
+  const auto valid = camera.validated("camera");
+  if (!valid) return tl::unexpected(valid.error());
+  request.view = {*valid, message.min_range_m, message.max_range_m};
+  return all_of(finite(message.min_range_m, "min_range_m", 0, 100),
+                finite(message.max_range_m, "max_range_m", message.min_range_m, 1000));
+}
+
+Status read_up(const liloc_msg_SpotRequest& message, SpotRequest& request) {
+  if (!message.has_up) return {};
+  const Eigen::Vector3d up = Eigen::Map<const Eigen::Vector3d>(message.up_sensor);
+  if (!up.allFinite() || std::abs(up.norm() - 1) > 1e-2)
+    return fail("up_sensor has length {}, must be a unit vector", up.norm());
+  request.up_sensor = up.normalized();
+  request.up_sd_rad = message.up_sd_rad;
+  return finite(message.up_sd_rad, "up_sd_rad", 0, 3.2);
+}
+
+}  // namespace
+
+Result<RequestSample> to_wire(const SpotRequest& request, std::uint64_t session) {
+  if (request.local_poses.size() > kMaxLocalPoses)
+    return fail("request has {} local poses, at most {} travel; thin them", request.local_poses.size(),
+                kMaxLocalPoses);
+  if (request.lpc.bytes.size() > kMaxLpcBytes)
+    return fail("request's LPC has {} bytes, at most {} travel; use a larger voxel", request.lpc.bytes.size(),
+                kMaxLpcBytes);
+  RequestSample sample;
+  auto& m = sample.message;
+  m.protocol_version = kProtocolVersion;
+  copy_text(m.client_id, request.client_id);
+  m.session = session;
+  m.seq = request.seq;
+  m.stamp_ns = request.stamp_ns;
+  m.odom_segment = request.odom_segment;
+  m.T_odom_sensor = to_wire(request.T_odom_sensor);
+  m.odom_sd_rad = request.odom_sd_rad;
+  m.odom_sd_m = request.odom_sd_m;
+  for (const auto& local : request.local_poses)
+    sample.poses.push_back({local.stamp_ns, to_wire(local.T_odom_sensor), local.informative});
+  lend(m.local_poses, sample.poses);
+  m.codec = static_cast<std::uint8_t>(request.lpc.codec);
+  lend(m.lpc, request.lpc.bytes);
+  m.voxel_size_m = request.voxel_size_m;
+  const Camera& c = request.view.camera;
+  m.camera = {static_cast<std::uint16_t>(c.width),
+              static_cast<std::uint16_t>(c.height),
+              c.fx,
+              c.fy,
+              c.cx,
+              c.cy,
+              c.depth_scale_m};
+  m.min_range_m = request.view.min_range_m;
+  m.max_range_m = request.view.max_range_m;
+  m.has_up = request.up_sensor.has_value();
+  if (request.up_sensor) Eigen::Map<Eigen::Vector3d>(m.up_sensor) = *request.up_sensor;
+  m.up_sd_rad = request.up_sd_rad;
+  m.cold = request.cold;
+  return sample;
+}
+
+liloc_msg_SpotReply to_wire(const SpotReply& reply, std::uint64_t session) {
+  liloc_msg_SpotReply m{};
+  m.protocol_version = kProtocolVersion;
+  copy_text(m.server_id, reply.server_id);
+  copy_text(m.client_id, reply.client_id);
+  m.session = session;
+  m.seq = reply.seq;
+  m.stamp_ns = reply.stamp_ns;
+  m.gpc_stamp_ns = reply.gpc_stamp_ns;
+  m.status = static_cast<std::uint8_t>(reply.status);
+  m.reason = static_cast<std::uint8_t>(reply.reason);
+  copy_text(m.text, reply.text);
+  m.has_T_map_sensor = reply.T_map_sensor.has_value();
+  m.T_map_sensor = to_wire(reply.T_map_sensor.value_or(Pose::Identity()));
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(m.covariance) = reply.covariance;
+  m.fitness = reply.fitness;
+  m.inlier_rmse_m = reply.inlier_rmse_m;
+  m.overlap = reply.overlap;
+  m.margin = reply.margin;
+  m.has_T_map_odom = reply.T_map_odom.has_value();
+  m.T_map_odom = to_wire(reply.T_map_odom.value_or(Pose::Identity()));
+  m.odom_segment = reply.odom_segment;
+  m.latency_ms = reply.latency_ms;
+  return m;
+}
+
+Result<SpotRequest> from_wire(const liloc_msg_SpotRequest& message) {
+  SpotRequest request;
+  const auto id = valid_id(text_of(message.client_id), "client_id");
+  if (!id) return tl::unexpected(id.error());
+  request.client_id = *id;
+  request.seq = message.seq;
+  request.stamp_ns = message.stamp_ns;
+  request.odom_segment = message.odom_segment;
+  const auto T = pose_of(message.T_odom_sensor, "T_odom_sensor");
+  if (!T) return tl::unexpected(T.error());
+  request.T_odom_sensor = *T;
+  request.odom_sd_rad = message.odom_sd_rad;
+  request.odom_sd_m = message.odom_sd_m;
+  request.voxel_size_m = message.voxel_size_m;
+  request.cold = message.cold;
+  const Status numbers = all_of(
+      stamp_of(message.stamp_ns, "stamp_ns"), finite(message.odom_sd_rad, "odom_sd_rad", 0, 1e3),
+      finite(message.odom_sd_m, "odom_sd_m", 0, 1e5), finite(message.voxel_size_m, "voxel_size_m", 0.005, 1.0));
+  if (!numbers) return tl::unexpected(numbers.error());
+  for (const auto read : {read_local_poses, read_cloud, read_view, read_up})
+    if (const Status status = read(message, request); !status) return tl::unexpected(status.error());
+  return request;
+}
+
+Result<SpotReply> from_wire(const liloc_msg_SpotReply& message) {
+  SpotReply reply;
+  reply.client_id = text_of(message.client_id);
+  reply.server_id = text_of(message.server_id);
+  reply.seq = message.seq;
+  reply.stamp_ns = message.stamp_ns;
+  reply.gpc_stamp_ns = message.gpc_stamp_ns;
+  if (message.status < 1 || message.status > 3) return fail("status is {}, must be 1..3", message.status);
+  reply.status = static_cast<SpotStatus>(message.status);
+  reply.reason = static_cast<Reason>(message.reason);  // a newer server may know more reasons than name_of does
+  reply.text = text_of(message.text);
+  reply.covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance);
+  if (!reply.covariance.allFinite() || reply.covariance.diagonal().minCoeff() < 0)
+    return fail("covariance is not finite or has a negative variance");
+  reply.fitness = message.fitness;
+  reply.inlier_rmse_m = message.inlier_rmse_m;
+  reply.overlap = message.overlap;
+  reply.margin = message.margin;
+  reply.odom_segment = message.odom_segment;
+  reply.latency_ms = message.latency_ms;
+  const Status numbers =
+      all_of(stamp_of(message.stamp_ns, "stamp_ns"), stamp_of(message.gpc_stamp_ns, "gpc_stamp_ns"),
+             finite(message.fitness, "fitness", 0, 1), finite(message.inlier_rmse_m, "inlier_rmse_m", 0, 1e3),
+             finite(message.overlap, "overlap", 0, 1), finite(message.margin, "margin", -1e6, 1e6),
+             finite(message.latency_ms, "latency_ms", 0, 1e9));
+  if (!numbers) return tl::unexpected(numbers.error());
+  const auto read = [](bool set, const liloc_msg_Transform& T, std::string_view what,
+                       std::optional<Pose>& to) -> Status {
+    if (!set) return {};
+    const auto pose = pose_of(T, what);
+    if (!pose) return tl::unexpected(pose.error());
+    to = *pose;
+    return {};
+  };
+  const Status poses =
+      all_of(read(message.has_T_map_sensor, message.T_map_sensor, "T_map_sensor", reply.T_map_sensor),
+             read(message.has_T_map_odom, message.T_map_odom, "T_map_odom", reply.T_map_odom));
+  if (!poses) return tl::unexpected(poses.error());
+  return reply;
+}
+
+}  // namespace liloc::wire

@@ -1,0 +1,80 @@
+#include "common/wire/convert_status.hpp"
+
+#include "common/base/ids.hpp"
+#include "common/protocol/spot.hpp"
+#include "common/wire/convert.hpp"
+
+namespace liloc::wire {
+
+std::string_view name_of(LidarState state) {
+  switch (state) {
+    case LidarState::waiting:
+      return "waiting";
+    case LidarState::ok:
+      return "ok";
+    case LidarState::slow:
+      return "slow";
+    case LidarState::silent:
+      return "silent";
+    case LidarState::malformed:
+      return "malformed";
+  }
+  return "unknown";
+}
+
+StatusSample to_wire(const ServerStatus& status) {
+  constexpr std::size_t kMaxLidars = 64;
+  StatusSample sample;
+  auto& m = sample.message;
+  m.protocol_version = kProtocolVersion;
+  copy_text(m.server_id, status.server_id);
+  m.stamp_ns = status.stamp_ns;
+  m.uptime_s = status.uptime_s;
+  for (const auto& lidar : status.lidars) {
+    if (sample.lidars.size() == kMaxLidars) break;
+    auto& row = sample.lidars.emplace_back();
+    copy_text(row.id, lidar.id);
+    row.state = static_cast<std::uint8_t>(lidar.state);
+    row.measured_hz = lidar.measured_hz;
+    row.frames = lidar.frames;
+    row.malformed = lidar.malformed;
+    copy_text(row.last_error, lidar.last_error);
+  }
+  lend(m.lidars, sample.lidars);
+  m.clients = status.clients;
+  m.queued = status.queued;
+  m.answered = status.answered;
+  m.verified = status.verified;
+  m.refused = status.refused;
+  return sample;
+}
+
+Result<ServerStatus> from_wire(const liloc_msg_ServerStatus& message) {
+  if (message.protocol_version != kProtocolVersion)
+    return fail("server speaks version {}, this program {}; update the older one", message.protocol_version,
+                kProtocolVersion);
+  ServerStatus status;
+  const auto id = valid_id(text_of(message.server_id), "server_id");
+  if (!id) return tl::unexpected(id.error());
+  status.server_id = *id;
+  status.stamp_ns = message.stamp_ns;
+  status.uptime_s = message.uptime_s;
+  if (auto valid = finite(message.uptime_s, "uptime_s", 0, 1e12); !valid) return tl::unexpected(valid.error());
+  for (std::uint32_t i = 0; i < message.lidars._length; ++i) {
+    const auto& row = message.lidars._buffer[i];
+    if (row.state > static_cast<std::uint8_t>(LidarState::malformed))
+      return fail("lidars[{}].state is {}, must be 0..4", i, row.state);
+    if (auto valid = finite(row.measured_hz, "measured_hz", 0, 1e6); !valid)
+      return tl::unexpected(valid.error());
+    status.lidars.push_back({text_of(row.id), static_cast<LidarState>(row.state), row.measured_hz, row.frames,
+                             row.malformed, text_of(row.last_error)});
+  }
+  status.clients = message.clients;
+  status.queued = message.queued;
+  status.answered = message.answered;
+  status.verified = message.verified;
+  status.refused = message.refused;
+  return status;
+}
+
+}  // namespace liloc::wire

@@ -1,0 +1,46 @@
+#pragma once
+// Messages with every field set, for the tests of this room.
+#include "common/protocol/spot.hpp"
+
+namespace liloc::wire {
+
+inline Pose sample_pose(double s) {
+  Pose T = Pose::Identity();
+  T.linear() = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(s, 2 * s, -s);
+  return T;
+}
+
+inline SpotRequest sample_request(const std::string& client_id = "robot1", std::uint64_t seq = 7) {
+  SpotRequest r;
+  r.client_id = client_id;
+  r.seq = seq;
+  r.stamp_ns = 1'700'000'000'123'456'789;
+  r.odom_segment = 3;
+  r.T_odom_sensor = sample_pose(1);
+  r.local_poses = {{r.stamp_ns - 2, sample_pose(0.25), false}, {r.stamp_ns, sample_pose(0.5), true}};
+  r.lpc = {CloudCodec::draco, {1, 2, 3, 4, 5}};
+  r.view = {{320, 240, 228.5, 230.5, 159.5, 119.5, 0.001}, 0.25, 8.5};
+  r.up_sensor = Eigen::Vector3d(0, -1, 0);
+  r.cold = true;
+  return r;
+}
+
+inline SpotReply sample_reply(const SpotRequest& request = sample_request()) {
+  SpotReply r = refusal(request, Reason::confirmed, "three spots agree");
+  r.status = SpotStatus::verified;
+  r.gpc_stamp_ns = request.stamp_ns + 5;
+  r.T_map_sensor = sample_pose(4);
+  r.covariance = Matrix6d::Identity() * 0.25;
+  r.covariance(0, 5) = 0.125;
+  r.fitness = 0.5;
+  r.inlier_rmse_m = 0.03125;
+  r.overlap = 0.75;
+  r.margin = 0.25;
+  r.T_map_odom = sample_pose(8);
+  r.latency_ms = 12.5;
+  r.server_id = "edge1";
+  return r;
+}
+
+}  // namespace liloc::wire

@@ -18,12 +18,12 @@ namespace {
 
 constexpr int kSilentIntervals = 3;
 constexpr std::size_t kFewestSurfels = 60;     // a frame with fewer cannot be matched
-constexpr std::size_t kMostLocalPoses = 1000;  // memory bound while no request leaves
+constexpr std::size_t kMostLocalPoses = 250;   // a message holds 256; older ones of a long silence are left out
 constexpr double kOdomSdM = 0.01, kOdomSdRad = 0.005, kOdomSdShare = 0.01;  // floor, and share of path and turn
 
 OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
   OdometryOptions options;
-  options.method = o.local;
+  options.method = o.T_imu_sensor ? o.local : LocalMethod::cloud;
   options.camera = thinned(o.camera, thinning);
   options.max_range_m = o.max_range_m;
   options.T_imu_sensor = o.T_imu_sensor;
@@ -76,6 +76,7 @@ struct Engine::Impl {
   Pose T_odom_last = Pose::Identity();
   double path_m = 0, turned_rad = 0;  ///< since the last request
   std::optional<SpotRequest> request;
+  std::vector<std::uint64_t> unanswered;
 };
 
 Status Engine::Impl::check(const DepthImage& image) const {
@@ -135,13 +136,18 @@ Result<FrameResult> Engine::Impl::add_depth(const DepthImage& image) {
   const Stopwatch watch;
   const FrameSpread spread =
       informativeness.judge(image, options.camera, options.min_range_m, options.max_range_m);
+  log::debug("frame: {} (sd {:.3f} m, {:.2f} valid, {:.2f} near)", name_of(spread.fault), spread.sd_m,
+             spread.valid_share, spread.near_share);
   const DepthImage small = thinned(image, thinning);
   const auto cloud = depth_to_cloud(small, thinned(options.camera, thinning), depth_options());
   if (!cloud) return tl::unexpected(cloud.error());
   const std::vector<Surfel> surfels =
       extract_surfels(*cloud, Eigen::Vector3f::Zero(), {.size_m = 2 * options.voxel_size_m});
-  const bool informative = spread.informative() && surfels.size() >= kFewestSurfels;
-  const OdometryStep step = odometry.step(small, surfels, informative, imu ? &*imu : nullptr);
+  const bool enough = surfels.size() >= kFewestSurfels;
+  const bool informative = spread.informative() && enough;
+  // A spike or drop is a reason not to ask the server; whether the frame fits the map the odometry judges itself.
+  const bool matchable = enough && spread.fault != FrameFault::covered && spread.fault != FrameFault::too_few_points;
+  const OdometryStep step = odometry.step(small, surfels, matchable, imu ? &*imu : nullptr);
   note_motion(step);
   if (local_poses.size() >= kMostLocalPoses) local_poses.erase(local_poses.begin());
   local_poses.push_back({image.stamp_ns, step.T_odom_sensor, informative});
@@ -158,9 +164,11 @@ Result<FrameResult> Engine::Impl::add_depth(const DepthImage& image) {
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   frame.latency_ms = watch.elapsed_ms();
 
-  for (const std::uint64_t seq : schedule.take_unanswered(image.stamp_ns))
+  for (const std::uint64_t seq : schedule.take_unanswered(image.stamp_ns)) {
+    unanswered.push_back(seq);
     log::warning("{}: request {} was not answered within {:.1f} s", options.client_id, seq,
                  to_seconds(options.reply_timeout_ns));
+  }
   if (schedule.due(image.stamp_ns, informative)) {
     auto made = make_request(image, step);
     if (made) {
@@ -189,6 +197,8 @@ Result<FrameResult> Engine::add_depth(const DepthImage& image) {
 std::optional<SpotRequest> Engine::take_request() {
   return std::exchange(impl_->request, std::nullopt);
 }
+
+std::vector<std::uint64_t> Engine::take_unanswered() { return std::exchange(impl_->unanswered, {}); }
 
 void Engine::add_reply(const SpotReply& reply) {
   impl_->schedule.answered(reply.seq);

@@ -55,6 +55,8 @@ class Engine {
   [[nodiscard]] Result<FrameResult> add_depth(const DepthImage& image);
   /// The request that the last frame made due, if any; taken once.
   [[nodiscard]] std::optional<SpotRequest> take_request();
+  /// The requests that have stayed without an answer for too long since the last call, by seq.
+  [[nodiscard]] std::vector<std::uint64_t> take_unanswered();
   /// Moves map -> odom when verified. Answers of a past odometry segment are ignored.
   void add_reply(const SpotReply& reply);
 

@@ -44,6 +44,8 @@ class ImuTrack {
 
   /// A rotation rate seen by other means (odometry over a span), to which the bias slowly gives way.
   void observe_rotation(StampNs from_ns, StampNs to_ns, const Eigen::Matrix3d& R_from_to);
+  /// The device is said to stand still at the start, and the samples agree so far.
+  [[nodiscard]] bool still() const { return calibrating_ && count_ > 20; }
   [[nodiscard]] bool calibrated() const { return calibrated_s_ >= 0.5; }
   [[nodiscard]] const Eigen::Vector3d& gyro_bias_rad_s() const { return bias_; }
 

@@ -59,7 +59,7 @@ const char* name_of(FrameFault fault) {
 }
 
 FrameFault Informativeness::compare(double sd_m) const {
-  if (static_cast<int>(recent_.size()) < options_.window / 3) return FrameFault::none;
+  if (static_cast<int>(recent_.size()) < 3) return FrameFault::none;
   const double usual = median({recent_.begin(), recent_.end()});
   std::vector<double> off;
   for (const double s : recent_) off.push_back(std::abs(s - usual));
@@ -89,7 +89,10 @@ FrameSpread Informativeness::judge(const DepthImage& image, const Camera& camera
     return spread;
   }
   outside_.clear();
-  if (!spread.informative()) return spread;
+  if (!spread.informative()) {
+    recent_.clear();  // behind the hand or the person the scene goes on changing
+    return spread;
+  }
   recent_.push_back(spread.sd_m);
   if (static_cast<int>(recent_.size()) > options_.window) recent_.pop_front();
   return spread;

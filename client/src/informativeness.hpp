@@ -12,10 +12,10 @@ struct InformativenessOptions {
   double min_sd_m = 0.05;         ///< a bare wall seen squarely spreads less
   double near_m = 0.6;            ///< a body this close ...
   double max_near_share = 0.6;    ///< ... over so much of the valid pixels fills the view
-  double sudden_share = 0.35;     ///< change against the recent median that counts as spike or drop ...
+  double sudden_share = 0.40;     ///< change against the recent median that counts as spike or drop ...
   double sudden_deviations = 5;   ///< ... if it also exceeds so many robust deviations of the recent values
-  int window = 15;                ///< recent informative frames
-  int accept_after = 8;           ///< frames at a new level after which it is the normal one
+  int window = 5;                 ///< recent informative frames; more would call a steady turn sudden
+  int accept_after = 4;           ///< frames at a new level after which it is the normal one
 };
 
 enum class FrameFault { none, too_few_points, covered, flat, spike, drop };

@@ -13,6 +13,7 @@ constexpr double kTurnAccelSd = 10.0;  // rad/s^2: the same in rotation, where n
 constexpr double kImuAccelSd = 0.4;    // m/s^2: what is left of it after the accelerometer
 constexpr double kVelocitySd = 0.05;   // m/s: of the velocity that a guess starts from
 constexpr double kGyroSd = 0.004;      // rad/s: noise, bias and timing together
+constexpr double kStillSdRad = 5e-5, kStillSdM = 3e-4;  // of a frame's motion while the device stands still
 constexpr StampNs kLongestStepNs = from_ms(1000);
 
 }  // namespace
@@ -34,6 +35,10 @@ MotionGuess Odometry::guess(StampNs stamp_ns, const ImuTrack* imu) {
   }
   const Pose& T_imu_sensor = *options_.T_imu_sensor;
   const Pose T_odom_imu = T_odom_last_ * T_imu_sensor.inverse();
+  if (imu->still()) {
+    velocity_odom_ = velocity_imu_odom_ = turn_rate_ = Eigen::Vector3d::Zero();
+    return {T_odom_last_, kStillSdRad, kStillSdM};
+  }
   const bool inertial = options_.method != LocalMethod::cloud || blind > 1.5 * dt;
   if (inertial) {
     const Eigen::Matrix3d R = T_odom_imu.linear();
@@ -61,6 +66,13 @@ bool Odometry::believable(const ScanMatch& match, const MotionGuess& guess) cons
 std::optional<ScanMatch> Odometry::match(const std::vector<Surfel>& frame, const MotionGuess& guess,
                                          StampNs stamp_ns, OdometryStep& step) const {
   const auto found = match_scan(map_, frame, guess, stamp_ns);
+  if (found)
+    log::debug("match: overlap {:.2f} paired {:.2f} rmse {:.1f} mm, {} unobserved, {} iterations, {:.1f} mm {:.3f} deg "
+               "from a guess good to {:.1f} mm {:.3f} deg, map {}",
+               found->overlap, found->paired, 1e3 * found->rmse_m, found->unobserved, found->iterations,
+               1e3 * distance_m(found->T_map_sensor, guess.T_map_sensor),
+               degrees(angle_between_rad(found->T_map_sensor, guess.T_map_sensor)), 1e3 * guess.sd_m,
+               degrees(guess.sd_rad), map_.size());
   if (found && believable(*found, guess)) {
     step.method = options_.method == LocalMethod::inertial ? "inertial" : "icp";
     return *found;

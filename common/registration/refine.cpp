@@ -82,13 +82,26 @@ Pose moved(const Pose& T, const Vector6d& step) {
   return result;
 }
 
+/// Pulls towards the prior, in the same axes as the pairs: about the source's origin.
+void add_prior(const PosePrior& prior, const Pose& T, Normals* sum) {
+  const double variance = prior.residual_sd_m * prior.residual_sd_m;
+  const double w_rotation = variance / (prior.sd_rad * prior.sd_rad), w_shift = variance / (prior.sd_m * prior.sd_m);
+  const Eigen::Vector3d turn = so3_log(T.linear() * prior.T_target_source.linear().transpose());
+  sum->H.topLeftCorner<3, 3>().diagonal().array() += w_rotation;
+  sum->H.bottomRightCorner<3, 3>().diagonal().array() += w_shift;
+  sum->g.head<3>() += w_rotation * turn;
+  sum->g.tail<3>() += w_shift * (T.translation() - prior.T_target_source.translation());
+}
+
 /// Iterates with a distance that shrinks geometrically; true when the last step was small.
-bool iterate(const Side& side, int iterations, double from_m, double to_m, const RefineOptions& options, Pose* T) {
+bool iterate(const Side& side, int iterations, double from_m, double to_m, const RefineOptions& options,
+             const PosePrior* prior, Pose* T) {
   bool small = false;
   for (int i = 0; i < iterations; ++i) {
     const double share = iterations > 1 ? std::min(1.0, 1.5 * i / (iterations - 1.0)) : 1.0;
-    const Normals sum = accumulate(side, *T, from_m * std::pow(to_m / from_m, share), options);
+    Normals sum = accumulate(side, *T, from_m * std::pow(to_m / from_m, share), options);
     if (sum.pairs < 12) return false;
+    if (prior != nullptr) add_prior(*prior, *T, &sum);
     const Vector6d step = solve(sum);
     *T = moved(*T, step);
     small = step.head<3>().norm() < 2e-4 && step.tail<3>().norm() < 5e-4;
@@ -118,16 +131,16 @@ Fit fit_of(const Target& target, const Cloud& cloud_source, const Pose& T_target
 }
 
 Alignment refine(const Target& target, const Query& query, const Pose& T_target_source_guess,
-                 const RefineOptions& options) {
+                 const RefineOptions& options, const PosePrior* prior) {
   Alignment result;
   Pose T = T_target_source_guess;
   const double middle_m = std::min(options.start_distance_m, 2 * options.end_distance_m);
   if (options.coarse_iterations > 0)
     iterate({target.coarse, target.nearest_coarse, query.medium}, options.coarse_iterations, options.start_distance_m,
-            middle_m, options, &T);
+            middle_m, options, prior, &T);
   const Side fine{target.cloud, target.nearest, query.cloud};
   result.converged = iterate(fine, options.fine_iterations, std::min(middle_m, 0.125), options.end_distance_m,
-                             options, &T);
+                             options, prior, &T);
   result.T_target_source = normalized(T);
 
   const Normals sum = accumulate(fine, result.T_target_source, options.end_distance_m, options);

@@ -22,10 +22,17 @@ struct Alignment {
   bool converged = false;
 };
 
+/// What is known of the pose beforehand, e.g. from odometry; it holds the directions that no surface observes.
+struct PosePrior {
+  Pose T_target_source = Pose::Identity();
+  double sd_rad = 0.02, sd_m = 0.05;
+  double residual_sd_m = 0.02;  ///< of one pair, by which surfaces and prior are weighed against each other
+};
+
 /// Refines a guess by iterated closest points: point-to-plane along the mean of both normals, pairs weighted by
 /// Geman-McClure with a width that shrinks from start to end distance. Pure; many threads may share `target`.
 [[nodiscard]] Alignment refine(const Target& target, const Query& query, const Pose& T_target_source_guess,
-                               const RefineOptions& options = {});
+                               const RefineOptions& options = {}, const PosePrior* prior = nullptr);
 
 /// Share of points with a target point within `distance_m` and the RMSE over them, without refinement.
 struct Fit {

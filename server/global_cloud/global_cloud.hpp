@@ -1,7 +1,8 @@
 #pragma once
 // The room as the ceiling sees it now: the newest frames of every LiDAR, and immutable snapshots of them.
+#include <chrono>
+#include <condition_variable>
 #include <deque>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -35,15 +36,22 @@ class GlobalCloud {
   /// Error: no LiDAR has one. The snapshot's own stamp is that of its nearest frame.
   [[nodiscard]] Result<std::shared_ptr<const Snapshot>> nearest(StampNs stamp_ns);
 
+  /// Waits until `nearest` has an answer for the stamp, or newer frames show that it never will, or `limit` is
+  /// over. At 6 Hz the nearest frame of a fresh request is often still to come.
+  void await(StampNs stamp_ns, std::chrono::milliseconds limit);
+
   [[nodiscard]] const Site& site() const { return site_; }
 
  private:
   using Frame = std::shared_ptr<const LidarFrame>;
-  struct Key;
+
+  [[nodiscard]] Frame nearest_frame(std::size_t lidar, StampNs stamp_ns) const;  ///< null: none; mutex_ held
+  [[nodiscard]] bool settled(StampNs stamp_ns) const;                            ///< mutex_ held
 
   const Site site_;
   const GlobalCloudOptions options_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
   std::vector<std::deque<Frame>> frames_;                       ///< per LiDAR, by rising stamp
   std::deque<std::shared_ptr<const Snapshot>> snapshots_;       ///< built lately, newest last
 };

@@ -1,0 +1,45 @@
+#pragma once
+#include <vector>
+
+#include "common/registration/fpfh.hpp"
+#include "common/registration/gravity_search.hpp"
+#include "common/registration/target.hpp"
+
+namespace liloc {
+
+/// What a cloud needs for matching by features: its thinned points and their descriptors.
+struct Described {
+  Cloud cloud;
+  Features features;
+};
+
+struct DescribeOptions {
+  double feature_radius_m = 0.5;  ///< five times the spacing of the thinned cloud
+  double sampling = 0.5;          ///< share of the points that are described
+  std::uint64_t seed = 1;
+};
+[[nodiscard]] Described describe(const Cloud& thinned, const DescribeOptions& options);
+
+struct FeatureSearchOptions {
+  bool grid = true;               ///< Algorithm 2; false: one cell over everything
+  double cell_m = 2.5;            ///< half the width of a cell
+  int iterations = 60000;         ///< three-point samples, over all cells
+  double edge_ratio = 0.85;       ///< the sides of both triangles agree to this share
+  std::size_t propose = 40;
+  std::uint64_t seed = 1;
+  int threads = 1;
+};
+
+/// The paper's grid-RANSAC (section 5.2, Algorithm 2): the target is cut into overlapping cells, RANSAC over
+/// feature matches runs in each, in parallel; cells with too few points or covered by their neighbours are left
+/// out. Samples are scored on the target's fine field with an early stop. Each cell has its own seed, so the answer
+/// does not depend on the number of threads. Needs no gravity.
+[[nodiscard]] std::vector<Candidate> feature_search(const Target& target, const Described& target_described,
+                                                    const Query& query, const Described& query_described,
+                                                    const FeatureSearchOptions& options = {});
+
+/// Overlapping square cells over x and y as lists of feature columns; at least one.
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> partition(const Described& described, double cell_m,
+                                                                std::size_t min_points);
+
+}  // namespace liloc

@@ -1,0 +1,50 @@
+#include "common/registration/spot.hpp"
+
+#include <algorithm>
+
+namespace liloc {
+
+std::vector<Candidate> GravityProposer::propose(const SpotProblem& problem) const {
+  if (!problem.up_sensor) return {};
+  GravitySearchOptions options;
+  options.threads = problem.threads;
+  return gravity_search(problem.target, problem.query, *problem.up_sensor, options);
+}
+
+std::vector<Candidate> FeatureProposer::propose(const SpotProblem& problem) const {
+  FeatureSearchOptions options = options_;
+  options.threads = problem.threads;
+  options.seed = problem.seed;
+  return feature_search(problem.target, problem.target_described(), problem.query, problem.query_described(), options);
+}
+
+Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor_guess, const JudgeOptions& options,
+                            const PosePrior* prior) {
+  Hypothesis h;
+  h.alignment = refine(problem.target, problem.query, T_map_sensor_guess, options.refine, prior);
+  h.judgement = judge(problem.target, problem.query, problem.query.medium, h.T_map_sensor(), options.fine_tolerance_m);
+  return h;
+}
+
+std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector<Candidate> candidates,
+                                         const JudgeOptions& options) {
+  for (Candidate& c : candidates)
+    c.score = judge(problem.target, problem.query, problem.query.sparse, c.T_map_sensor, options.coarse_tolerance_m).score;
+  std::vector<Hypothesis> refined;
+  for (const Candidate& c : distinct(std::move(candidates), 0.25, radians(8), options.refine_most))
+    refined.push_back(refine_and_judge(problem, c.T_map_sensor, options));
+  std::stable_sort(refined.begin(), refined.end(), [](const Hypothesis& a, const Hypothesis& b) {
+    return a.judgement.score > b.judgement.score;
+  });
+  std::vector<Hypothesis> kept;
+  for (const Hypothesis& h : refined) {
+    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& k) {
+      return distance_m(k.T_map_sensor(), h.T_map_sensor()) < 0.25 &&
+             angle_between_rad(k.T_map_sensor(), h.T_map_sensor()) < radians(8);
+    });
+    if (!known && kept.size() < options.keep) kept.push_back(h);
+  }
+  return kept;
+}
+
+}  // namespace liloc

@@ -1,0 +1,72 @@
+#pragma once
+// One spot: propose by whatever is known, judge all candidates alike, refine the best few.
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "common/registration/feature_search.hpp"
+#include "common/registration/gravity_search.hpp"
+#include "common/registration/judge.hpp"
+#include "common/registration/refine.hpp"
+
+namespace liloc {
+
+/// All that a proposer may look at. `target_described` and `query_described` are made when first asked for.
+struct SpotProblem {
+  const Target& target;
+  const Query& query;
+  std::optional<Eigen::Vector3d> up_sensor;      ///< against gravity
+  std::optional<Pose> T_map_sensor_predicted;
+  std::function<const Described&()> target_described, query_described;
+  std::uint64_t seed = 1;
+  int threads = 1;
+};
+
+/// A way to find candidate poses. Stateless; any thread may call it.
+class Proposer {
+ public:
+  virtual ~Proposer() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Empty when the proposer cannot work on this problem (no gravity, no features).
+  [[nodiscard]] virtual std::vector<Candidate> propose(const SpotProblem& problem) const = 0;
+};
+
+class GravityProposer final : public Proposer {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "gravity"; }
+  [[nodiscard]] std::vector<Candidate> propose(const SpotProblem& problem) const override;
+};
+
+class FeatureProposer final : public Proposer {
+ public:
+  explicit FeatureProposer(FeatureSearchOptions options) : options_(options) {}
+  [[nodiscard]] std::string_view name() const override { return "features"; }
+  [[nodiscard]] std::vector<Candidate> propose(const SpotProblem& problem) const override;
+
+ private:
+  FeatureSearchOptions options_;
+};
+
+/// A refined and judged pose.
+struct Hypothesis {
+  Alignment alignment;
+  Judgement judgement;
+  [[nodiscard]] const Pose& T_map_sensor() const { return alignment.T_target_source; }
+};
+
+struct JudgeOptions {
+  double coarse_tolerance_m = 0.12, fine_tolerance_m = 0.05;
+  std::size_t refine_most = 12, keep = 5;
+  RefineOptions refine;
+};
+
+/// Judges candidates roughly, refines the best, judges them again: distinct hypotheses, best first.
+[[nodiscard]] std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector<Candidate> candidates,
+                                                       const JudgeOptions& options = {});
+
+/// Refines and judges a single pose, e.g. a predicted one.
+[[nodiscard]] Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor_guess,
+                                          const JudgeOptions& options = {}, const PosePrior* prior = nullptr);
+
+}  // namespace liloc

@@ -1,0 +1,106 @@
+#include "server/global_cloud/global_cloud.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace liloc {
+namespace {
+
+constexpr std::size_t kSnapshotsKept = 4;  // clients of one moment share one; an index of a room is some 20 MB
+
+StampNs gap(StampNs a, StampNs b) { return a > b ? a - b : b - a; }
+
+/// Renders points into the LiDAR's own camera; the nearest point of a pixel wins.
+DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_sensor) {
+  DepthImage image{stamp_ns, camera.width, camera.height, {}};
+  image.units.assign(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), 0);
+  for (const auto& p : cloud_sensor.points) {
+    if (!p.allFinite() || p.z() <= 0) continue;
+    const double u = p.x() / p.z() * camera.fx + camera.cx + 0.5, v = p.y() / p.z() * camera.fy + camera.cy + 0.5;
+    const double units = p.z() / camera.depth_scale_m + 0.5;
+    if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height && units >= 1 && units < 65535)) continue;
+    std::uint16_t& held = image.units[static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
+                                      static_cast<std::size_t>(u)];
+    if (held == 0 || units < held) held = static_cast<std::uint16_t>(units);
+  }
+  return image;
+}
+
+}  // namespace
+
+GlobalCloud::GlobalCloud(Site site, GlobalCloudOptions options)
+    : site_(std::move(site)), options_(options), frames_(site_.global_lidars.size()) {}
+
+Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
+  if (lidar >= site_.global_lidars.size()) return fail("LiDAR {} of {} does not exist", lidar, site_.global_lidars.size());
+  const GlobalLidar& info = site_.global_lidars[lidar];
+  if (image.width != info.camera.width || image.height != info.camera.height ||
+      image.units.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+    return fail("{}: depth image is {}x{} with {} values, the site says {}x{}", info.id, image.width, image.height,
+                image.units.size(), info.camera.width, info.camera.height);
+  {
+    const std::scoped_lock lock(mutex_);
+    auto& frames = frames_[lidar];
+    if (!frames.empty() && image.stamp_ns <= frames.back()->stamp_ns())
+      return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns, frames.back()->stamp_ns());
+    frames.push_back(std::make_shared<const LidarFrame>(std::move(image), info, options_.snapshot));
+    const StampNs oldest = frames.back()->stamp_ns() - options_.keep_ns;
+    while (frames.size() > options_.max_frames_per_lidar || frames.front()->stamp_ns() < oldest) frames.pop_front();
+  }
+  arrived_.notify_all();
+  return {};
+}
+
+Status GlobalCloud::add_points(std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor) {
+  if (lidar >= site_.global_lidars.size()) return fail("LiDAR {} of {} does not exist", lidar, site_.global_lidars.size());
+  return add_depth(lidar, rendered(site_.global_lidars[lidar].camera, stamp_ns, cloud_sensor));
+}
+
+GlobalCloud::Frame GlobalCloud::nearest_frame(std::size_t lidar, StampNs stamp_ns) const {
+  Frame best;
+  for (const Frame& frame : frames_[lidar])
+    if (!best || gap(frame->stamp_ns(), stamp_ns) < gap(best->stamp_ns(), stamp_ns)) best = frame;
+  return best && gap(best->stamp_ns(), stamp_ns) <= options_.match_ns ? best : nullptr;
+}
+
+Result<std::shared_ptr<const Snapshot>> GlobalCloud::nearest(StampNs stamp_ns) {
+  const std::scoped_lock lock(mutex_);
+  std::vector<Frame> frames;
+  StampNs newest = 0, snapshot_stamp = 0, least = std::numeric_limits<StampNs>::max();
+  for (std::size_t lidar = 0; lidar < frames_.size(); ++lidar) {
+    if (!frames_[lidar].empty()) newest = std::max(newest, frames_[lidar].back()->stamp_ns());
+    const Frame frame = nearest_frame(lidar, stamp_ns);
+    if (!frame) continue;
+    if (gap(frame->stamp_ns(), stamp_ns) < least) {
+      least = gap(frame->stamp_ns(), stamp_ns);
+      snapshot_stamp = frame->stamp_ns();
+    }
+    frames.push_back(frame);
+  }
+  if (frames.empty())
+    return newest == 0 ? fail("no ceiling LiDAR has sent a frame yet")
+                       : fail("no ceiling frame within {:.0f} ms of the request; the newest is {:.0f} ms away",
+                              to_ms(options_.match_ns), to_ms(newest - stamp_ns));
+  const auto known = std::find_if(snapshots_.begin(), snapshots_.end(), [&](const auto& s) { return s->frames() == frames; });
+  if (known != snapshots_.end()) return *known;
+  snapshots_.push_back(std::make_shared<const Snapshot>(snapshot_stamp, std::move(frames), options_.snapshot));
+  if (snapshots_.size() > kSnapshotsKept) snapshots_.pop_front();
+  return snapshots_.back();
+}
+
+bool GlobalCloud::settled(StampNs stamp_ns) const {
+  bool any = false, passed = true;
+  for (std::size_t lidar = 0; lidar < frames_.size(); ++lidar) {
+    any = any || nearest_frame(lidar, stamp_ns) != nullptr;
+    passed = passed && !frames_[lidar].empty() && frames_[lidar].back()->stamp_ns() > stamp_ns + options_.match_ns;
+  }
+  return any || passed;
+}
+
+void GlobalCloud::await(StampNs stamp_ns, std::chrono::milliseconds limit) {
+  std::unique_lock lock(mutex_);
+  arrived_.wait_for(lock, limit, [&] { return settled(stamp_ns); });
+}
+
+}  // namespace liloc

@@ -1,0 +1,103 @@
+#include "server/global_cloud/global_cloud.hpp"
+
+#include <gmock/gmock.h>
+
+#include <thread>
+
+namespace liloc {
+namespace {
+
+const Camera kCamera{32, 24, 25.0, 25.0, 15.5, 11.5, 0.001};
+
+Site two_lidars() {
+  Site site;
+  for (const char* id : {"a", "b"}) site.global_lidars.push_back({id, kCamera, 8.0, Pose::Identity()});
+  site.global_lidars[1].T_map_sensor.translation().x() = 0.01;
+  return site;
+}
+
+DepthImage wall(StampNs stamp_ns, std::uint16_t units = 2000) {
+  return {stamp_ns, 32, 24, std::vector<std::uint16_t>(32 * 24, units)};
+}
+
+constexpr StampNs kT0 = 1'700'000'000'000'000'000;
+
+TEST(GlobalCloud, MatchesTheNearestFramesWithin100Ms) {
+  GlobalCloud cloud(two_lidars(), {});
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(125 * i))));
+    ASSERT_TRUE(cloud.add_depth(1, wall(kT0 + from_ms(125 * i + 30))));
+  }
+  const auto snapshot = cloud.nearest(kT0 + from_ms(260));
+  ASSERT_TRUE(snapshot);
+  EXPECT_EQ((*snapshot)->frames().size(), 2U);
+  EXPECT_EQ((*snapshot)->stamp_ns(), kT0 + from_ms(250));
+  EXPECT_EQ(*cloud.nearest(kT0 + from_ms(262)), *snapshot) << "the same frames are the same snapshot";
+  EXPECT_THAT(cloud.nearest(kT0 + from_ms(2000)).error().message, testing::HasSubstr("within 100 ms"));
+}
+
+TEST(GlobalCloud, ASilentLidarIsLeftOut) {
+  GlobalCloud cloud(two_lidars(), {});
+  ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));
+  ASSERT_TRUE(cloud.add_depth(1, wall(kT0 - from_ms(500))));
+  const auto snapshot = cloud.nearest(kT0);
+  ASSERT_TRUE(snapshot);
+  ASSERT_EQ((*snapshot)->frames().size(), 1U);
+  EXPECT_EQ((*snapshot)->frames()[0]->lidar().id, "a");
+}
+
+TEST(GlobalCloud, BadFramesChangeNothing) {
+  GlobalCloud cloud(two_lidars(), {});
+  EXPECT_FALSE(cloud.nearest(kT0));
+  EXPECT_FALSE(cloud.add_depth(2, wall(kT0)));
+  DepthImage small = wall(kT0);
+  small.width = 31;
+  EXPECT_THAT(cloud.add_depth(0, small).error().message, testing::HasSubstr("31x24"));
+  ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));
+  EXPECT_THAT(cloud.add_depth(0, wall(kT0)).error().message, testing::HasSubstr("not newer"));
+  EXPECT_TRUE(cloud.nearest(kT0));
+}
+
+TEST(GlobalCloud, KeepsThreeSeconds) {
+  GlobalCloud cloud(two_lidars(), {});
+  for (int i = 0; i <= 50; ++i) ASSERT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(100 * i))));
+  EXPECT_TRUE(cloud.nearest(kT0 + from_ms(2000)));
+  EXPECT_FALSE(cloud.nearest(kT0 + from_ms(1800)));
+}
+
+TEST(GlobalCloud, StitchesInTheMapFrame) {
+  Site site = two_lidars();
+  site.global_lidars[1].T_map_sensor.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  GlobalCloud cloud(site, {});
+  ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));
+  ASSERT_TRUE(cloud.add_depth(1, wall(kT0)));
+  const Target& target = (*cloud.nearest(kT0))->target();
+  ASSERT_FALSE(target.cloud.empty());
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < target.cloud.size(); ++i) {
+    EXPECT_NEAR(std::abs(target.cloud.points[i].z()), 2.0F, 0.01F);
+    EXPECT_LT(target.cloud.normals[i].z() * target.cloud.points[i].z(), 0) << "normals face their sensor";
+    front += target.cloud.points[i].z() > 0;
+  }
+  EXPECT_GT(front, target.cloud.size() / 3);
+  EXPECT_LT(front, target.cloud.size() * 2 / 3);
+}
+
+TEST(GlobalCloud, PointsAndDepthGiveTheSameCloud) {
+  GlobalCloud depth(two_lidars(), {}), points(two_lidars(), {});
+  ASSERT_TRUE(depth.add_depth(0, wall(kT0)));
+  const auto cloud_sensor = depth_to_cloud(wall(kT0), kCamera);
+  ASSERT_TRUE(points.add_points(0, kT0, *cloud_sensor));
+  EXPECT_EQ((*depth.nearest(kT0))->target().cloud.size(), (*points.nearest(kT0))->target().cloud.size());
+}
+
+TEST(GlobalCloud, AwaitReturnsWhenTheFrameComes) {
+  GlobalCloud cloud(two_lidars(), {});
+  ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));
+  std::jthread late([&] { EXPECT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(200)))); });
+  cloud.await(kT0 + from_ms(190), std::chrono::seconds(20));
+  EXPECT_TRUE(cloud.nearest(kT0 + from_ms(190)));
+}
+
+}  // namespace
+}  // namespace liloc

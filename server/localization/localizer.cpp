@@ -1,0 +1,81 @@
+#include "server/localization/localizer.hpp"
+
+#include <exception>
+#include <map>
+#include <mutex>
+
+#include "common/base/log.hpp"
+#include "server/localization/session.hpp"
+#include "server/localization/spot_solver.hpp"
+
+namespace liloc {
+
+Result<Method> method_from(std::string_view name) {
+  if (name == "liloc") return Method::liloc;
+  if (name == "dynamic-noopt") return Method::dynamic_noopt;
+  if (name == "dynamic-nover") return Method::dynamic_nover;
+  if (name == "static-noopt") return Method::static_noopt;
+  return fail("method '{}' is unknown; choose liloc, dynamic-noopt, dynamic-nover or static-noopt", name);
+}
+
+struct Localizer::Impl {
+  GlobalCloud& global_cloud;
+  const LocalizerOptions options;
+  std::mutex mutex;
+  std::map<std::string, std::shared_ptr<Session>> sessions;
+  std::shared_ptr<const Snapshot> first_snapshot;  ///< static_noopt: the room as it was at the start
+
+  std::shared_ptr<Session> session(const std::string& client_id) {
+    const std::scoped_lock lock(mutex);
+    auto& held = sessions[client_id];
+    if (!held) held = std::make_shared<Session>(options);
+    return held;
+  }
+
+  Result<std::shared_ptr<const Snapshot>> snapshot(StampNs stamp_ns) {
+    auto nearest = global_cloud.nearest(stamp_ns);
+    if (!nearest || options.method != Method::static_noopt) return nearest;
+    const std::scoped_lock lock(mutex);
+    if (!first_snapshot) first_snapshot = *nearest;
+    return first_snapshot;
+  }
+
+  SpotReply answer(const SpotRequest& request) {
+    const auto held = session(request.client_id);
+    const std::scoped_lock in_turn(held->mutex);
+    const auto room = snapshot(request.stamp_ns);
+    if (!room) return refusal(request, Reason::no_gpc, room.error().message);
+    const auto spot = Spot::create(request, *room, options);
+    if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);
+    SpotReply reply = refusal(request, Reason::none, "");
+    reply.gpc_stamp_ns = (*spot)->gpc_stamp_ns();
+    held->answer(request, *spot, &reply);
+    return reply;
+  }
+};
+
+Localizer::Localizer(GlobalCloud& global_cloud, LocalizerOptions options)
+    : impl_(new Impl{global_cloud, std::move(options), {}, {}, {}}) {}
+
+Localizer::~Localizer() = default;
+
+SpotReply Localizer::locate(const SpotRequest& request) {
+  const Stopwatch watch;
+  SpotReply reply;
+  try {
+    reply = impl_->answer(request);
+  } catch (const std::exception& trouble) {  // out of memory, a library's complaint: the client still gets an answer
+    log::error("request {} of {}: {}", request.seq, request.client_id, trouble.what());
+    reply = refusal(request, Reason::not_found, "the server failed on this request");
+  }
+  reply.server_id = impl_->options.server_id;
+  reply.latency_ms = watch.elapsed_ms();
+  return reply;
+}
+
+void Localizer::forget(const std::string& client_id) {
+  const std::scoped_lock lock(impl_->mutex);
+  impl_->sessions.erase(client_id);
+}
+
+}  // namespace liloc

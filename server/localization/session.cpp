@@ -1,0 +1,154 @@
+#include "server/localization/session.hpp"
+
+#include <algorithm>
+
+namespace liloc {
+namespace {
+
+void report(const Hypothesis& hypothesis, double margin, SpotReply* reply) {
+  reply->T_map_sensor = hypothesis.T_map_sensor();
+  reply->fitness = hypothesis.alignment.fitness;
+  reply->inlier_rmse_m = hypothesis.alignment.inlier_rmse_m;
+  reply->overlap = hypothesis.judgement.overlap();
+  reply->margin = margin;
+  const Matrix6d information = hypothesis.alignment.information + 1e-2 * Matrix6d::Identity();
+  reply->covariance = information.inverse();
+}
+
+void conclude(SpotStatus status, Reason reason, SpotReply* reply) {
+  reply->status = status;
+  reply->reason = reason;
+}
+
+}  // namespace
+
+void Session::start_segment(std::uint32_t segment) {
+  segment_ = segment;
+  started_ = true;
+  tracks_.clear();
+  own_answers_.clear();
+  T_map_odom_.reset();
+  weak_in_a_row_ = spots_since_search_ = 0;
+}
+
+bool Session::conclusive(const std::vector<Hypothesis>& found) const {
+  if (found.empty()) return false;
+  const Judgement& best = found.front().judgement;
+  return best.agree >= verify_.conclusive_agree && best.overlap() >= verify_.conclusive_overlap &&
+         best.map_agree >= verify_.conclusive_overlap && margin_of(found) >= verify_.conclusive_margin;
+}
+
+void Session::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  if (request.cold) return answer_cold(spot, reply);
+  if (!started_ || request.odom_segment != segment_) start_segment(request.odom_segment);
+  if (options_.method != Method::liloc) return answer_as_paper(spot, reply);
+  if (T_map_odom_) return answer_tracking(request, spot, reply);
+  answer_searching(spot, reply);
+}
+
+void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) const {
+  const bool paper = options_.method != Method::liloc;
+  const auto found = paper ? search_as_paper(*spot, options_) : search(*spot, options_);
+  if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
+  report(found.front(), margin_of(found), reply);
+  if (!paper && conclusive(found)) return conclude(SpotStatus::verified, Reason::conclusive, reply);
+  conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+}
+
+/// Verified or why not yet: the three equality checks among the spots' own answers, and a lead over every rival.
+std::optional<Reason> Session::decide(const std::vector<Hypothesis>& found) const {
+  if (conclusive(found)) return Reason::conclusive;
+  const Track& best = tracks_.best_first().front();
+  const auto spots = static_cast<double>(tracks_.spots());
+  if (best.supports() < verify_.spots || own_answers_.size() < 3) return std::nullopt;
+  if (tracks_.lead() < verify_.lead_per_spot * spots) return std::nullopt;
+  const Verification v = verify({own_answers_[0], own_answers_[1], own_answers_[2]}, verify_.equality);
+  if (v.verdict == Verdict::none) return std::nullopt;
+  const SpotPose newest{v.T_map_sensor[2], own_answers_[2].T_odom_sensor};
+  const SpotPose tracked{best.T_map_odom * newest.T_odom_sensor, newest.T_odom_sensor};
+  if (!equal(tracked, newest, verify_.equality)) return std::nullopt;
+  return v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed;
+}
+
+void Session::lock_on(const Track& track) {
+  T_map_odom_ = track.T_map_odom;
+  weak_in_a_row_ = spots_since_search_ = 0;
+}
+
+void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  const auto found = search(*spot, options_);
+  if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
+  tracks_.add(spot, found);
+  own_answers_.push_back({found.front().T_map_sensor(), spot->T_odom_sensor()});
+  if (own_answers_.size() > 3) own_answers_.pop_front();
+  last_margin_ = margin_of(found);
+
+  const Track& best = tracks_.best_first().front();
+  report(best.latest, last_margin_, reply);
+  if (const auto reason = decide(found)) {
+    lock_on(best);
+    reply->T_map_odom = T_map_odom_;
+    return conclude(SpotStatus::verified, *reason, reply);
+  }
+  const bool few = tracks_.spots() < static_cast<std::size_t>(verify_.spots);
+  const bool led = tracks_.lead() >= verify_.lead_per_spot * static_cast<double>(tracks_.spots());
+  conclude(SpotStatus::provisional, few ? Reason::awaiting_spots : led ? Reason::inconsistent : Reason::ambiguous, reply);
+}
+
+void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  const Pose predicted = *T_map_odom_ * request.T_odom_sensor;
+  PosePrior prior;
+  prior.T_target_source = predicted;
+  prior.sd_rad = std::max(0.01, request.odom_sd_rad) * (1 + weak_in_a_row_);
+  prior.sd_m = std::max(0.03, request.odom_sd_m) * (1 + weak_in_a_row_);
+  const Hypothesis here = refine_and_judge(spot->problem(), predicted, {}, &prior);
+  const bool stayed = distance_m(here.T_map_sensor(), predicted) < verify_.tracks.gate_m &&
+                      angle_between_rad(here.T_map_sensor(), predicted) < verify_.tracks.gate_rad;
+  const bool good = stayed && fits(here.judgement, verify_.tracks);
+  report(here, last_margin_, reply);
+  ++spots_since_search_;
+  if (good) {
+    T_map_odom_ = here.T_map_sensor() * request.T_odom_sensor.inverse();
+    reply->T_map_odom = T_map_odom_;
+    weak_in_a_row_ = 0;
+    conclude(SpotStatus::verified, Reason::confirmed, reply);
+  } else {
+    ++weak_in_a_row_;
+    conclude(SpotStatus::provisional, Reason::weak, reply);
+  }
+  if (good && spots_since_search_ < verify_.research_every) return;
+  if (!good && weak_in_a_row_ < 2) return;
+  // Look at the whole room again: a lifted device must not be believed for long.
+  spots_since_search_ = 0;
+  const auto found = search(*spot, options_);
+  last_margin_ = margin_of(found);
+  tracks_.add(spot, found);
+  if (weak_in_a_row_ < verify_.weak_spots) return;
+  const Pose lost = *T_map_odom_;
+  start_segment(segment_);
+  tracks_.add(spot, found);
+  if (found.empty()) return;
+  own_answers_.push_back({found.front().T_map_sensor(), spot->T_odom_sensor()});
+  (void)lost;
+}
+
+void Session::answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  const auto found = search_as_paper(*spot, options_);
+  if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
+  report(found.front(), margin_of(found), reply);
+  const SpotPose own{found.front().T_map_sensor(), spot->T_odom_sensor()};
+  if (options_.method == Method::dynamic_nover) {
+    reply->T_map_odom = own.T_map_sensor * own.T_odom_sensor.inverse();
+    return conclude(SpotStatus::verified, Reason::confirmed, reply);
+  }
+  own_answers_.push_back(own);
+  if (own_answers_.size() > 3) own_answers_.pop_front();
+  if (own_answers_.size() < 3) return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  const Verification v = verify({own_answers_[0], own_answers_[1], own_answers_[2]}, verify_.equality);
+  if (v.verdict == Verdict::none) return conclude(SpotStatus::provisional, Reason::inconsistent, reply);
+  reply->T_map_odom = v.T_map_sensor[2] * own.T_odom_sensor.inverse();
+  reply->T_map_sensor = v.T_map_sensor[2];
+  conclude(SpotStatus::verified, v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed, reply);
+}
+
+}  // namespace liloc

@@ -1,0 +1,57 @@
+#pragma once
+// What the server remembers of one client, and how it decides.
+#include <array>
+#include <deque>
+#include <mutex>
+#include <optional>
+
+#include "server/localization/equality.hpp"
+#include "server/localization/tracks.hpp"
+
+namespace liloc {
+
+/// When an answer counts as verified. Scores are points of `Judgement::score`.
+struct VerifyOptions {
+  EqualityThresholds equality;
+  TrackOptions tracks;
+  int spots = 3;                    ///< the paper's number
+  double lead_per_spot = 0.08;      ///< of the best track over the second, over the spots in memory
+  double conclusive_margin = 0.45;  ///< of one spot alone: score over the runner-up's ...
+  double conclusive_agree = 0.45;   ///< ... share of device points on seen surfaces ...
+  double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
+  int weak_spots = 4;               ///< so many in a row without support and the place is searched anew
+  int research_every = 6;           ///< while tracking, every so many spots the whole room is searched
+};
+
+/// One client's session. `mutex` is held by whoever answers one of its requests.
+class Session {
+ public:
+  explicit Session(const LocalizerOptions& options, VerifyOptions verify = {}) : options_(options), verify_(verify) {}
+
+  std::mutex mutex;
+
+  /// Fills status, reason, pose and evidence of the reply.
+  void answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply);
+
+ private:
+  void answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) const;
+  void answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
+  void answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply);
+  void answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
+  void start_segment(std::uint32_t segment);
+  [[nodiscard]] bool conclusive(const std::vector<Hypothesis>& found) const;
+  [[nodiscard]] std::optional<Reason> decide(const std::vector<Hypothesis>& found) const;
+  void lock_on(const Track& track);
+
+  const LocalizerOptions options_;
+  const VerifyOptions verify_;
+  std::uint32_t segment_ = 0;
+  bool started_ = false;
+  Tracks tracks_{verify_.tracks};
+  std::deque<SpotPose> own_answers_;  ///< the last three spots' own best poses
+  std::optional<Pose> T_map_odom_;    ///< of the verified track
+  double last_margin_ = 0;
+  int weak_in_a_row_ = 0, spots_since_search_ = 0;
+};
+
+}  // namespace liloc

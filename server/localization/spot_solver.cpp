@@ -1,0 +1,89 @@
+#include "server/localization/spot_solver.hpp"
+
+#include <algorithm>
+
+#include "common/codec/codec.hpp"
+#include "common/registration/feature_search.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr std::size_t kFewestPoints = 150;  // fewer at 0.05 m are a patch of wall that fits everywhere
+constexpr double kQueryFeatureShare = 0.5;
+
+/// A search that ends here needs no second opinion: much agrees, nothing contradicts, nobody is close.
+bool convincing(const std::vector<Hypothesis>& found) {
+  return !found.empty() && found.front().judgement.overlap() > 0.97 && found.front().judgement.agree > 0.3 &&
+         margin_of(found) > 0.15;
+}
+
+/// Merges two lists of hypotheses, best first, one per place.
+std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypothesis>& b) {
+  for (const Hypothesis& h : b)
+    if (std::none_of(a.begin(), a.end(), [&](const Hypothesis& k) {
+          return distance_m(k.T_map_sensor(), h.T_map_sensor()) < 0.25 &&
+                 angle_between_rad(k.T_map_sensor(), h.T_map_sensor()) < radians(8);
+        }))
+      a.push_back(h);
+  std::stable_sort(a.begin(), a.end(), [](const Hypothesis& x, const Hypothesis& y) {
+    return x.judgement.score > y.judgement.score;
+  });
+  return a;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request, std::shared_ptr<const Snapshot> snapshot,
+                                                 const LocalizerOptions& options) {
+  const auto cloud = decode(request.lpc);
+  if (!cloud) return tl::unexpected(cloud.error());
+  auto spot = std::make_shared<Spot>();
+  spot->snapshot_ = std::move(snapshot);
+  spot->T_odom_sensor_ = request.T_odom_sensor;
+  spot->query_ = make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed});
+  if (spot->query_.cloud.size() < kFewestPoints)
+    return fail("the LPC has {} usable points; at least {} are needed", spot->query_.cloud.size(), kFewestPoints);
+  Spot* raw = spot.get();
+  spot->problem_.emplace(SpotProblem{
+      spot->snapshot_->target(), spot->query_, request.up_sensor, std::nullopt,
+      [raw]() -> const Described& { return raw->snapshot_->described(); },
+      [raw, options]() -> const Described& {
+        std::call_once(raw->described_once_, [&] {
+          raw->described_ = describe(raw->query_.medium, {10 * options.voxel_size_m, kQueryFeatureShare, options.seed});
+        });
+        return raw->described_;
+      },
+      options.seed * 7919 + request.seq, options.threads});
+  return spot;
+}
+
+double margin_of(const std::vector<Hypothesis>& hypotheses) {
+  if (hypotheses.empty() || hypotheses.front().judgement.score <= 0) return 0;
+  if (hypotheses.size() < 2) return 1;
+  return std::clamp(1.0 - hypotheses[1].judgement.score / hypotheses[0].judgement.score, 0.0, 1.0);
+}
+
+std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions&) {
+  const SpotProblem& problem = spot.problem();
+  std::vector<Hypothesis> found = judge_candidates(problem, GravityProposer().propose(problem));
+  if (convincing(found)) return found;
+  return merged(std::move(found), judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem)));
+}
+
+std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions& options) {
+  FeatureSearchOptions features;
+  features.grid = options.method == Method::dynamic_nover;
+  JudgeOptions judging;
+  judging.refine.point_to_point = true;
+  std::vector<Hypothesis> found;
+  for (const Candidate& c : FeatureProposer(features).propose(spot.problem())) {
+    if (found.size() == judging.refine_most) break;
+    found.push_back(refine_and_judge(spot.problem(), c.T_map_sensor, judging));
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Hypothesis& a, const Hypothesis& b) {
+    return a.alignment.fitness > b.alignment.fitness;
+  });
+  return found;
+}
+
+}  // namespace liloc

@@ -1,0 +1,45 @@
+#pragma once
+// The registration side of an answer: a request's cloud against a snapshot.
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "common/protocol/spot.hpp"
+#include "common/registration/spot.hpp"
+#include "server/global_cloud/snapshot.hpp"
+#include "server/localization/localizer.hpp"
+
+namespace liloc {
+
+/// A spot to be solved: owns what its problem refers to, so that later spots can look back at it.
+class Spot {
+ public:
+  /// Error: the LPC cannot be decoded or has too few points.
+  static Result<std::shared_ptr<const Spot>> create(const SpotRequest& request, std::shared_ptr<const Snapshot> snapshot,
+                                                    const LocalizerOptions& options);
+
+  [[nodiscard]] const SpotProblem& problem() const { return *problem_; }
+  [[nodiscard]] const Query& query() const { return query_; }
+  [[nodiscard]] StampNs gpc_stamp_ns() const { return snapshot_->stamp_ns(); }
+  [[nodiscard]] const Pose& T_odom_sensor() const { return T_odom_sensor_; }
+
+ private:
+  std::shared_ptr<const Snapshot> snapshot_;
+  Query query_;
+  Pose T_odom_sensor_ = Pose::Identity();
+  mutable std::once_flag described_once_;
+  mutable Described described_;
+  std::optional<SpotProblem> problem_;
+};
+
+/// Everything is tried that the problem allows, cheapest first; features only when gravity alone is not
+/// convincing. Distinct hypotheses, best first; may be empty.
+[[nodiscard]] std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options);
+
+/// The paper's own spot localization, for comparison: (grid-)RANSAC, point-to-point ICP, best fitness wins.
+[[nodiscard]] std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions& options);
+
+/// Share by which the best score is above the second's, 0..1; 1 when it is alone.
+[[nodiscard]] double margin_of(const std::vector<Hypothesis>& hypotheses);
+
+}  // namespace liloc

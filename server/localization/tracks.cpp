@@ -1,0 +1,106 @@
+#include "server/localization/tracks.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace liloc {
+namespace {
+
+bool near(const Pose& a, const Pose& b, double angle_rad, double distance) {
+  return distance_m(a, b) <= distance && angle_between_rad(a, b) <= angle_rad;
+}
+
+}  // namespace
+
+double Track::total() const { return std::accumulate(scores.begin(), scores.end(), 0.0); }
+int Track::supports() const { return static_cast<int>(std::count(fits.begin(), fits.end(), true)); }
+int Track::own_finds() const { return static_cast<int>(std::count(found_own.begin(), found_own.end(), true)); }
+
+bool fits(const Judgement& judgement, const TrackOptions& options) {
+  return judgement.agree >= options.fits_agree && judgement.overlap() >= options.fits_overlap &&
+         judgement.map_agree >= options.fits_map_agree;
+}
+
+void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found,
+                    std::vector<bool>* taken) const {
+  const Pose predicted = track->T_map_odom * spot.T_odom_sensor();
+  bool own = false;
+  std::optional<Hypothesis> here;
+  for (std::size_t i = 0; i < found.size() && !here; ++i)
+    if (near(found[i].T_map_sensor(), predicted, options_.gate_rad, options_.gate_m)) {
+      here = found[i];
+      (*taken)[i] = true;
+      own = true;
+    }
+  if (!here) here = refine_and_judge(spot.problem(), predicted);
+  const bool stayed = near(here->T_map_sensor(), predicted, options_.gate_rad, options_.gate_m);
+  if (stayed)
+    track->T_map_odom = here->T_map_sensor() * spot.T_odom_sensor().inverse();
+  else
+    here->judgement = judge(spot.problem().target, spot.query(), spot.query().medium, predicted, 0.10);
+  track->latest = *here;
+  track->scores.push_back(here->judgement.score);
+  track->found_own.push_back(own);
+  track->fits.push_back(stayed && liloc::fits(here->judgement, options_));
+}
+
+Track Tracks::founded(const Hypothesis& hypothesis) const {
+  Track track;
+  const Spot& newest = *spots_.back();
+  track.T_map_odom = hypothesis.T_map_sensor() * newest.T_odom_sensor().inverse();
+  const Pose T_map_odom = track.T_map_odom;
+  std::vector<bool> taken;
+  for (std::size_t i = 0; i + 1 < spots_.size(); ++i) {
+    extend(&track, *spots_[i], {}, &taken);
+    track.T_map_odom = T_map_odom;  // looking back does not move it
+  }
+  track.latest = hypothesis;
+  track.scores.push_back(hypothesis.judgement.score);
+  track.found_own.push_back(true);
+  track.fits.push_back(liloc::fits(hypothesis.judgement, options_));
+  return track;
+}
+
+bool Tracks::same_place(const Track& a, const Track& b) const {
+  const Pose& T_odom_sensor = spots_.back()->T_odom_sensor();
+  return near(a.T_map_odom * T_odom_sensor, b.T_map_odom * T_odom_sensor, 2 * options_.gate_rad, 2 * options_.gate_m);
+}
+
+void Tracks::prune() {
+  std::stable_sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.total() > b.total(); });
+  std::vector<Track> kept;
+  for (Track& track : tracks_)
+    if (kept.size() < options_.most_tracks &&
+        std::none_of(kept.begin(), kept.end(), [&](const Track& k) { return same_place(k, track); }))
+      kept.push_back(std::move(track));
+  tracks_ = std::move(kept);
+}
+
+void Tracks::add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypothesis>& found) {
+  spots_.push_back(spot);
+  if (spots_.size() > options_.memory) {
+    spots_.pop_front();
+    for (Track& track : tracks_) {
+      track.scores.pop_front();
+      track.found_own.pop_front();
+      track.fits.pop_front();
+    }
+  }
+  std::vector<bool> taken(found.size(), false);
+  for (Track& track : tracks_) extend(&track, *spot, found, &taken);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (!taken[i]) tracks_.push_back(founded(found[i]));
+  prune();
+}
+
+void Tracks::clear() {
+  spots_.clear();
+  tracks_.clear();
+}
+
+double Tracks::lead() const {
+  if (tracks_.empty()) return 0;
+  return tracks_.front().total() - (tracks_.size() > 1 ? tracks_[1].total() : 0.0);
+}
+
+}  // namespace liloc

@@ -1,0 +1,62 @@
+#pragma once
+// Several answers to "where does odometry lie in the map?", each weighed by all recent spots.
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "server/localization/spot_solver.hpp"
+
+namespace liloc {
+
+/// One answer and what each of the last spots says of it.
+struct Track {
+  Pose T_map_odom = Pose::Identity();
+  std::deque<double> scores;   ///< one per spot in memory, newest last
+  std::deque<bool> found_own;  ///< whether the spot's own search came to it
+  std::deque<bool> fits;       ///< whether the spot, refined from it, stays with it and is not contradicted
+  Hypothesis latest;           ///< at the newest spot
+
+  [[nodiscard]] double total() const;
+  [[nodiscard]] int supports() const;   ///< spots that fit
+  [[nodiscard]] int own_finds() const;
+};
+
+struct TrackOptions {
+  std::size_t memory = 5;        ///< spots
+  std::size_t most_tracks = 6;
+  double gate_rad = radians(6.0), gate_m = 0.25;  ///< how far a spot may lie from its prediction
+  double fits_agree = 0.12;      ///< least share of device points on seen surfaces
+  double fits_overlap = 0.93;    ///< least share of agreeing among judged device points
+  double fits_map_agree = 0.90;  ///< the same for ceiling points in the device's view
+};
+
+/// Whether free space bears a pose out.
+[[nodiscard]] bool fits(const Judgement& judgement, const TrackOptions& options);
+
+/// The tracks of one odometry segment. Each new spot is compared with every track, and each new track with the
+/// spots before it, so that all are weighed by the same evidence. Not thread-safe.
+class Tracks {
+ public:
+  explicit Tracks(TrackOptions options = {}) : options_(options) {}
+
+  /// `found` are the spot's own hypotheses, best first.
+  void add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypothesis>& found);
+  void clear();
+
+  [[nodiscard]] const std::vector<Track>& best_first() const { return tracks_; }
+  [[nodiscard]] std::size_t spots() const { return spots_.size(); }
+  /// Total score of the best over that of the second, both over all spots in memory, in points of score.
+  [[nodiscard]] double lead() const;
+
+ private:
+  void extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found, std::vector<bool>* taken) const;
+  [[nodiscard]] Track founded(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool same_place(const Track& a, const Track& b) const;
+  void prune();
+
+  TrackOptions options_;
+  std::deque<std::shared_ptr<const Spot>> spots_;
+  std::vector<Track> tracks_;
+};
+
+}  // namespace liloc

@@ -70,23 +70,29 @@ std::optional<Reason> Session::decide(const std::vector<Hypothesis>& found) cons
   return v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed;
 }
 
-void Session::lock_on(const Track& track) {
-  T_map_odom_ = track.T_map_odom;
-  weak_in_a_row_ = spots_since_search_ = 0;
+/// Searches the whole room from this spot and lets all tracks weigh it; locks on and returns why once that is safe.
+std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& spot, std::vector<Hypothesis>* found) {
+  *found = search(*spot, options_);
+  spots_since_search_ = 0;
+  if (found->empty()) return std::nullopt;
+  tracks_.add(spot, *found);
+  own_answers_.push_back({found->front().T_map_sensor(), spot->T_odom_sensor()});
+  if (own_answers_.size() > 3) own_answers_.pop_front();
+  last_margin_ = margin_of(*found);
+  const auto reason = decide(*found);
+  if (reason) {
+    T_map_odom_ = tracks_.best_first().front().T_map_odom;
+    weak_in_a_row_ = 0;
+  }
+  return reason;
 }
 
 void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
-  const auto found = search(*spot, options_);
+  std::vector<Hypothesis> found;
+  const auto reason = search_room(spot, &found);
   if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
-  tracks_.add(spot, found);
-  own_answers_.push_back({found.front().T_map_sensor(), spot->T_odom_sensor()});
-  if (own_answers_.size() > 3) own_answers_.pop_front();
-  last_margin_ = margin_of(found);
-
-  const Track& best = tracks_.best_first().front();
-  report(best.latest, last_margin_, reply);
-  if (const auto reason = decide(found)) {
-    lock_on(best);
+  report(tracks_.best_first().front().latest, last_margin_, reply);
+  if (reason) {
     reply->T_map_odom = T_map_odom_;
     return conclude(SpotStatus::verified, *reason, reply);
   }
@@ -95,41 +101,36 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
   conclude(SpotStatus::provisional, few ? Reason::awaiting_spots : led ? Reason::inconsistent : Reason::ambiguous, reply);
 }
 
-void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+/// Refines the predicted pose, held by odometry where surfaces say nothing; true when free space bears it out.
+bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* reply) {
   const Pose predicted = *T_map_odom_ * request.T_odom_sensor;
   PosePrior prior;
   prior.T_target_source = predicted;
   prior.sd_rad = std::max(0.01, request.odom_sd_rad) * (1 + weak_in_a_row_);
   prior.sd_m = std::max(0.03, request.odom_sd_m) * (1 + weak_in_a_row_);
-  const Hypothesis here = refine_and_judge(spot->problem(), predicted, {}, &prior);
+  const Hypothesis here = refine_and_judge(spot.problem(), predicted, {}, &prior);
+  report(here, last_margin_, reply);
   const bool stayed = distance_m(here.T_map_sensor(), predicted) < verify_.tracks.gate_m &&
                       angle_between_rad(here.T_map_sensor(), predicted) < verify_.tracks.gate_rad;
-  const bool good = stayed && fits(here.judgement, verify_.tracks);
-  report(here, last_margin_, reply);
-  ++spots_since_search_;
-  if (good) {
-    T_map_odom_ = here.T_map_sensor() * request.T_odom_sensor.inverse();
-    reply->T_map_odom = T_map_odom_;
-    weak_in_a_row_ = 0;
-    conclude(SpotStatus::verified, Reason::confirmed, reply);
-  } else {
-    ++weak_in_a_row_;
-    conclude(SpotStatus::provisional, Reason::weak, reply);
+  if (!stayed || !fits(here.judgement, verify_.tracks)) return false;
+  T_map_odom_ = here.T_map_sensor() * request.T_odom_sensor.inverse();
+  return true;
+}
+
+void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  const bool good = follow(request, *spot, reply);
+  weak_in_a_row_ = good ? 0 : weak_in_a_row_ + 1;
+  conclude(good ? SpotStatus::verified : SpotStatus::provisional, good ? Reason::confirmed : Reason::weak, reply);
+  // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that was
+  // lifted and put elsewhere must not be believed for long.
+  if (++spots_since_search_ >= verify_.research_every || weak_in_a_row_ >= 2) {
+    std::vector<Hypothesis> found;
+    if (const auto reason = search_room(spot, &found)) {
+      report(tracks_.best_first().front().latest, last_margin_, reply);
+      conclude(SpotStatus::verified, *reason, reply);
+    }
   }
-  if (good && spots_since_search_ < verify_.research_every) return;
-  if (!good && weak_in_a_row_ < 2) return;
-  // Look at the whole room again: a lifted device must not be believed for long.
-  spots_since_search_ = 0;
-  const auto found = search(*spot, options_);
-  last_margin_ = margin_of(found);
-  tracks_.add(spot, found);
-  if (weak_in_a_row_ < verify_.weak_spots) return;
-  const Pose lost = *T_map_odom_;
-  start_segment(segment_);
-  tracks_.add(spot, found);
-  if (found.empty()) return;
-  own_answers_.push_back({found.front().T_map_sensor(), spot->T_odom_sensor()});
-  (void)lost;
+  if (reply->verified()) reply->T_map_odom = T_map_odom_;
 }
 
 void Session::answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {

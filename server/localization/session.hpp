@@ -19,7 +19,6 @@ struct VerifyOptions {
   double conclusive_margin = 0.45;  ///< of one spot alone: score over the runner-up's ...
   double conclusive_agree = 0.45;   ///< ... share of device points on seen surfaces ...
   double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
-  int weak_spots = 4;               ///< so many in a row without support and the place is searched anew
   int research_every = 6;           ///< while tracking, every so many spots the whole room is searched
 };
 
@@ -41,7 +40,8 @@ class Session {
   void start_segment(std::uint32_t segment);
   [[nodiscard]] bool conclusive(const std::vector<Hypothesis>& found) const;
   [[nodiscard]] std::optional<Reason> decide(const std::vector<Hypothesis>& found) const;
-  void lock_on(const Track& track);
+  std::optional<Reason> search_room(const std::shared_ptr<const Spot>& spot, std::vector<Hypothesis>* found);
+  bool follow(const SpotRequest& request, const Spot& spot, SpotReply* reply);
 
   const LocalizerOptions options_;
   const VerifyOptions verify_;

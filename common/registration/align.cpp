@@ -1,0 +1,74 @@
+#include "common/registration/align.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/geometry/voxel.hpp"
+#include "common/registration/normals.hpp"
+#include "common/registration/spot.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr std::size_t kFewestPoints = 50;
+
+Status check(const AlignOptions& options) {
+  if (!(options.voxel_size_m >= 0.005 && options.voxel_size_m <= 1.0))
+    return fail("voxel is {} m; give 0.005 to 1", options.voxel_size_m);
+  if (options.threads < 1) return fail("threads is {}; give at least 1", options.threads);
+  return {};
+}
+
+struct Ranked {
+  Hypothesis hypothesis;
+  Fit fit;
+};
+
+/// Bare clouds have no free space to contradict: the share of the source that fits decides.
+std::vector<Ranked> rank(const SpotProblem& problem, const std::vector<Candidate>& candidates, double distance_m) {
+  JudgeOptions options;
+  options.refine_most = options.keep = 20;
+  std::vector<Ranked> ranked;
+  for (const Hypothesis& h : judge_candidates(problem, candidates, options))
+    ranked.push_back({h, fit_of(problem.target, problem.query.cloud, h.T_map_sensor(), distance_m)});
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.fit.fitness > b.fit.fitness; });
+  return ranked;
+}
+
+}  // namespace
+
+Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const AlignOptions& options) {
+  if (const Status status = check(options); !status) return tl::unexpected(status.error());
+  const double voxel = options.voxel_size_m;
+  const Query query = make_query(source, nullptr, {voxel, 400, options.seed});
+  if (query.cloud.size() < kFewestPoints)
+    return fail("source has {} usable points at a voxel of {} m; at least {} are needed", query.cloud.size(), voxel,
+                kFewestPoints);
+  Cloud thin = with_normals(voxel_downsample(target, voxel), Eigen::Vector3f::Zero(), {2.5 * voxel, 5});
+  if (thin.size() < kFewestPoints)
+    return fail("target has {} usable points at a voxel of {} m; at least {} are needed", thin.size(), voxel,
+                kFewestPoints);
+  const Target room = make_target(std::move(thin), {}, {voxel, true});
+  const Described room_described = describe(room.coarse, {10 * voxel, 1.0, options.seed});
+  const Described query_described = describe(query.medium, {10 * voxel, 1.0, options.seed});
+  SpotProblem problem{room, query, std::nullopt, std::nullopt, [&]() -> const Described& { return room_described; },
+                      [&]() -> const Described& { return query_described; }, options.seed, options.threads};
+  if (options.gravity) problem.up_sensor = Eigen::Vector3d::UnitZ();
+  FeatureSearchOptions features;
+  features.grid = false;
+  const auto candidates =
+      options.gravity ? GravityProposer().propose(problem) : FeatureProposer(features).propose(problem);
+  const auto ranked = rank(problem, candidates, 1.5 * voxel);
+  AlignResult result;
+  if (ranked.empty()) return result;
+  const Ranked& best = ranked.front();
+  result.T_target_source = best.hypothesis.T_map_sensor();
+  result.fitness = best.fit.fitness;
+  result.rmse_m = best.fit.inlier_rmse_m;
+  result.margin = ranked.size() > 1 && result.fitness > 0 ? 1.0 - ranked[1].fit.fitness / result.fitness : 1.0;
+  result.trusted = result.fitness >= 0.25 && result.margin >= 0.15 && best.hypothesis.alignment.pairs >= 100;
+  return result;
+}
+
+}  // namespace liloc

@@ -6,17 +6,6 @@
 namespace liloc::replay {
 namespace {
 
-std::vector<std::string> split(std::string_view line) {
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  std::vector<std::string> cells;
-  for (std::size_t start = 0;;) {
-    const std::size_t comma = line.find(',', start);
-    cells.emplace_back(line.substr(start, comma == std::string_view::npos ? comma : comma - start));
-    if (comma == std::string_view::npos) return cells;
-    start = comma + 1;
-  }
-}
-
 template <class T>
 std::optional<T> parsed(std::string_view text) {
   T value{};
@@ -27,16 +16,27 @@ std::optional<T> parsed(std::string_view text) {
 
 }  // namespace
 
+std::vector<std::string> split_cells(std::string_view line) {
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  std::vector<std::string> cells;
+  for (std::size_t start = 0;;) {
+    const std::size_t comma = line.find(',', start);
+    cells.emplace_back(line.substr(start, comma == std::string_view::npos ? comma : comma - start));
+    if (comma == std::string_view::npos) return cells;
+    start = comma + 1;
+  }
+}
+
 Result<Csv> Csv::read(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line;
   if (!in || !std::getline(in, line))
     return fail("{}: cannot be read, or is empty; run the replay again", file.string());
   Csv csv;
-  const std::vector<std::string> names = split(line);
+  const std::vector<std::string> names = split_cells(line);
   for (std::size_t i = 0; i < names.size(); ++i) csv.columns_[names[i]] = i;
   while (std::getline(in, line))
-    if (!line.empty()) csv.rows_.push_back(split(line));
+    if (!line.empty()) csv.rows_.push_back(split_cells(line));
   return csv;
 }
 

@@ -10,6 +10,9 @@
 
 namespace liloc::replay {
 
+/// The cells of one line; a trailing carriage return is no part of them.
+[[nodiscard]] std::vector<std::string> split_cells(std::string_view line);
+
 /// A CSV file with a header row and no quoting, as the traces are. Rows shorter than the header read as empty.
 class Csv {
  public:

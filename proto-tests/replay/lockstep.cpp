@@ -18,6 +18,7 @@ namespace {
 constexpr StampNs kHold_ns = from_ms(100);  // the farthest a ceiling frame may be from its request
 
 struct Device {
+  explicit Device(EngineOptions options) : engine(std::move(options)) {}
   Engine engine;
   TraceWriter trace;
   std::deque<SpotRequest> held;  ///< asked, not yet answered; oldest first
@@ -40,6 +41,7 @@ EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions&
 GlobalCloudOptions cloud_options(const ReplayOptions& options) {
   GlobalCloudOptions cloud;
   cloud.snapshot.voxel_size_m = options.voxel_m;
+  cloud.snapshot.feature_sampling = options.sampling;
   return cloud;
 }
 
@@ -63,8 +65,7 @@ class Lockstep {
 
   Status open(const ReplayOptions& options) {
     for (const DeviceRecording& device : recording_.devices) {
-      devices_.push_back(
-          std::make_unique<Device>(Device{Engine(engine_options(device, options)), TraceWriter(), {}}));
+      devices_.push_back(std::make_unique<Device>(engine_options(device, options)));
       if (auto status = devices_.back()->trace.open(trace_folder(options, device.info.id)); !status)
         return status;
     }
@@ -125,7 +126,10 @@ class Lockstep {
       return {};
     }
     if (auto status = device.trace.on_frame(*frame); !status) return status;
-    if (auto request = device.engine.take_request()) device.held.push_back(std::move(*request));
+    if (auto request = device.engine.take_request()) {
+      device.trace.on_request(*request);
+      device.held.push_back(std::move(*request));
+    }
     answer_due(event.stamp_ns);
     return {};
   }

@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "proto-tests/replay/processes.hpp"
+#include "proto-tests/replay/replay.hpp"
+#include "proto-tests/toolbox/command.hpp"
+
+namespace liloc::toolbox {
+namespace {
+
+int run(const replay::ReplayOptions& options) {
+  replay::catch_stop_signals();
+  ProgressBar bar(options.lockstep ? "replaying" : "replaying at recorded speed");
+  auto report = replay::replay(options, [&](double share) { bar.show(share); });
+  if (!report) return complain(report.error().error, report.error().bad_input ? kBadUsage : kFailed);
+  bar.show(1);
+  fmt::print("{}", replay::to_table(*report));
+  fmt::print("written to {}\n", options.out.string());
+  return kDone;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<replay::ReplayOptions>();
+  options->programs = replay::program_folder();
+  CLI::App* command = app.add_subcommand(
+      "replay", "Locate the devices of a recording, and judge the answers by its ground truth");
+  command->add_option("REC", options->recording, "Folder of the recording")->required();
+  command->add_option("--out", options->out, "Folder for the traces and report.json")->required();
+  command->add_flag("--lockstep", options->lockstep, "One process, no DDS, deterministic, as fast as it can");
+  command->add_option("--seed", options->seed, "Of all randomness")->capture_default_str();
+  command->add_option("--interval-ms", options->interval_ms, "Longest time between global registrations")
+      ->capture_default_str();
+  command->add_option("--voxel", options->voxel_m, "Voxel size in metres")->capture_default_str();
+  command->add_option("--method", options->method, "liloc, dynamic-noopt, dynamic-nover or static-noopt")
+      ->capture_default_str();
+  command->add_option("--local", options->local, "Local registration: cloud, inertial or dead-reckoning")
+      ->capture_default_str();
+  command->add_option("--features", options->features, "fpfh (learned needs a model, which this version lacks)")
+      ->capture_default_str();
+  command->add_option("--sampling", options->sampling, "Share of feature points that RANSAC uses")
+      ->capture_default_str();
+  command->add_option("--device", options->devices, "Replay this device alone; may be repeated");
+  command->add_flag("--cold", options->cold, "Answer each request on its own: no prior, no history");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace liloc::toolbox

@@ -1,0 +1,139 @@
+#include "proto-tests/sim/walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numbers>
+
+namespace liloc::sim {
+namespace {
+
+using Eigen::Vector2d;
+constexpr double kPersonalSpace = 0.75;  // metres between two bodies' middles
+constexpr double kPatience_s = 1.0;      // then one turns round and goes elsewhere
+
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2 * std::numbers::pi);
+}
+
+struct Walker {
+  WalkStyle style;
+  WalkState state;
+  std::deque<Vector2d> way;
+  double rest_s = 0, blocked_s = 0;
+};
+
+bool in_the_way(const Walker& self, const Vector2d& next, const std::vector<Walker>& all) {
+  return std::ranges::any_of(all, [&](const Walker& other) {
+    if (&other == &self) return false;
+    const double now = (other.state.at - self.state.at).norm(), then = (other.state.at - next).norm();
+    return then < kPersonalSpace && then < now;
+  });
+}
+
+void choose_goal(Random& random, const FloorPlan& plan, Walker& walker) {
+  for (int i = 0; i < 20 && walker.way.empty(); ++i) {
+    const Vector2d goal = plan.random_place(random);
+    if ((goal - walker.state.at).norm() < 1.5) continue;
+    const auto way = plan.route(plan.nearest_free(walker.state.at), goal);
+    walker.way.assign(way.begin(), way.end());
+  }
+}
+
+/// Turns towards `aim`; returns how far off it still looks.
+double turn(Walker& walker, const Vector2d& aim) {
+  const Vector2d ahead = aim - walker.state.at;
+  if (ahead.norm() < 0.05) return 0;
+  const double off = wrapped(std::atan2(ahead.y(), ahead.x()) - walker.state.yaw_rad);
+  const double most = walker.style.turn_rad_s * kWalkStep_s;
+  walker.state.yaw_rad += std::clamp(off, -most, most);
+  return std::abs(off);
+}
+
+/// One step along the way, unless a body stands there.
+void advance(Walker& walker, const std::vector<Walker>& all) {
+  const double off = turn(walker, walker.way.front());
+  const double limit = walker.style.turns_first ? 0.2 : 1.2;
+  const double wanted = off > limit ? 0.0 : walker.style.speed_m_s;
+  const double gain = walker.style.speed_m_s * 2 * kWalkStep_s;  // half a second to full speed
+  walker.state.speed_m_s = std::clamp(wanted, walker.state.speed_m_s - gain, walker.state.speed_m_s + gain);
+  double left = walker.state.speed_m_s * kWalkStep_s;
+  Vector2d next = walker.state.at;
+  auto corner = walker.way.begin();
+  for (; corner != walker.way.end() && left > 0; ++corner) {
+    const Vector2d leg = *corner - next;
+    if (leg.norm() > left) {
+      next += leg * (left / leg.norm());
+      break;
+    }
+    next = *corner;
+    left -= leg.norm();
+  }
+  if (in_the_way(walker, next, all)) {
+    walker.state.speed_m_s = 0;
+    walker.blocked_s += kWalkStep_s;
+    return;
+  }
+  walker.blocked_s = 0;
+  walker.state.at = next;
+  walker.way.erase(walker.way.begin(), corner);
+}
+
+void step(Random& random, const FloorPlan& plan, Walker& walker, const std::vector<Walker>& all,
+          double time_s) {
+  if (time_s < walker.style.start_s || walker.rest_s > 0) {
+    walker.rest_s -= kWalkStep_s;
+    walker.state.speed_m_s = 0;
+    return;
+  }
+  if (walker.blocked_s > kPatience_s) {
+    walker.way.clear();
+    walker.blocked_s = 0;
+  }
+  const bool arrived = walker.way.empty();
+  if (arrived) choose_goal(random, plan, walker);
+  if (arrived && random.chance(walker.style.pause_chance)) walker.rest_s = random.uniform(0.5, 3);
+  if (!walker.way.empty() && walker.rest_s <= 0) advance(walker, all);
+}
+
+}  // namespace
+
+std::vector<Walk> draw_walks(Random& random, const FloorPlan& plan, const std::vector<WalkStyle>& styles,
+                             double seconds) {
+  std::vector<Walker> walkers;
+  for (const WalkStyle& style : styles) {
+    Walker walker;
+    walker.style = style;
+    for (int i = 0; i < 50; ++i) {
+      walker.state.at = plan.random_place(random);
+      if (std::ranges::all_of(walkers,
+                              [&](const Walker& w) { return (w.state.at - walker.state.at).norm() > 1.2; }))
+        break;
+    }
+    choose_goal(random, plan, walker);  // look where the way will lead
+    if (walker.way.size() > 1) {
+      const Vector2d ahead = walker.way[1] - walker.state.at;
+      walker.state.yaw_rad = std::atan2(ahead.y(), ahead.x());
+    }
+    walkers.push_back(std::move(walker));
+  }
+  std::vector<Walk> walks(styles.size());
+  for (int i = 0; i * kWalkStep_s < seconds + 1; ++i)
+    for (std::size_t w = 0; w < walkers.size(); ++w) {
+      walks[w].push_back(walkers[w].state);
+      step(random, plan, walkers[w], walkers, i * kWalkStep_s);
+    }
+  return walks;
+}
+
+WalkState state_at(const Walk& walk, double time_s) {
+  const double position = std::clamp(time_s / kWalkStep_s, 0.0, static_cast<double>(walk.size() - 1));
+  const auto before = static_cast<std::size_t>(position);
+  const std::size_t after = std::min(before + 1, walk.size() - 1);
+  const double share = position - static_cast<double>(before);
+  const WalkState &a = walk[before], &b = walk[after];
+  return {a.at + share * (b.at - a.at), a.yaw_rad + share * (b.yaw_rad - a.yaw_rad),
+          a.speed_m_s + share * (b.speed_m_s - a.speed_m_s)};
+}
+
+}  // namespace liloc::sim

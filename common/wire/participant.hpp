@@ -29,8 +29,8 @@ struct DomainOptions {
   int domain = 0;  ///< 0..230
   Role role = Role::client;
   std::string interface = "lo";  ///< name ("eth0"), address ("10.0.0.7"), or "auto"; "lo" never leaves the host
-  std::vector<std::string>
-      peers;  ///< hosts of the server and of sources, for client and source; empty: this host
+  /// Hosts of the server and of sources, for client and source; empty: this host.
+  std::vector<std::string> peers = {};
   int receive_buffer_kb = 4096;  ///< lowered, with a warning, to what net.core.rmem_max allows
 };
 

@@ -1,0 +1,177 @@
+#include "server/service/desk.hpp"
+
+#include <exception>
+
+#include "common/base/ids.hpp"
+#include "common/base/log.hpp"
+
+namespace liloc {
+namespace {
+
+bool same_client(const wire::Arrival& a, const wire::Arrival& b) {
+  return a.from.client_id == b.from.client_id;
+}
+
+/// Of two requests of one client: a later run of the client is newer, and within a run the higher seq.
+bool is_newer(const wire::Arrival& a, const wire::Arrival& b) {
+  return a.from.session != b.from.session ? a.at > b.at : a.request.seq > b.request.seq;
+}
+
+}  // namespace
+
+Result<ServiceOptions> ServiceOptions::validated() const {
+  if (const auto id = valid_id(server_id, "server_id"); !id) return tl::unexpected(id.error());
+  if (workers < 1 || workers > 64) return fail("workers is {}, must be 1..64", workers);
+  if (queue < 1 || queue > 4096) return fail("queue is {}, must be 1..4096", queue);
+  if (!(max_rate_hz > 0) || max_rate_hz > 1e4)
+    return fail("max_rate_hz is {}, must be above 0, up to 10000", max_rate_hz);
+  if (max_clients < 1 || max_clients > 4096) return fail("max_clients is {}, must be 1..4096", max_clients);
+  if (hold.count() < 0 || hold.count() > 1000) return fail("hold is {} ms, must be 0..1000", hold.count());
+  return *this;
+}
+
+Desk::Desk(ServiceOptions options, ServiceBackend backend, Answer answer)
+    : options_(std::move(options)),
+      backend_(std::move(backend)),
+      answer_(std::move(answer)),
+      sessions_(options_.max_rate_hz),
+      queue_(options_.queue) {
+  for (int i = 0; i < options_.workers; ++i) workers_.emplace_back([this] { work(); });
+}
+
+Desk::~Desk() {
+  stop();
+}
+
+void Desk::submit(wire::Arrival arrival) {
+  if (stopping_) return refuse(arrival, Reason::shutting_down, "the server stops");
+  bool begins = false, late = false;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!sessions_.admit(arrival)) arrival.problem = Reason::rate_limit;
+    if (arrival.problem == Reason::none) {
+      begins = sessions_.begins(arrival.from);
+      late = sessions_.is_late(arrival.from, arrival.request.seq);
+    }
+  }
+  if (arrival.problem == Reason::rate_limit)
+    return refuse(arrival, Reason::rate_limit,
+                  fmt::format("more than {} requests a second", options_.max_rate_hz));
+  if (arrival.problem != Reason::none) return refuse(arrival, arrival.problem, arrival.text);
+  if (late) return refuse(arrival, Reason::late, "a request as new as this was answered already");
+  if (begins && backend_.forget) backend_.forget(arrival.from.client_id);
+
+  if (const auto older = take_older(arrival)) {
+    if (is_newer(*older, arrival)) {  // they came in the wrong order
+      refuse(arrival, Reason::superseded, "a newer request took its place");
+      arrival = *older;
+    } else {
+      refuse(*older, Reason::superseded, "a newer request took its place");
+    }
+  }
+  if (options_.hold.count() > 0 && backend_.ready && !backend_.ready(arrival.request.stamp_ns)) {
+    const std::scoped_lock lock(mutex_);
+    if (!stopping_ && held_.size() < options_.queue) {
+      held_.push_back(std::move(arrival));
+      return;
+    }
+  }
+  enqueue(std::move(arrival));
+}
+
+std::optional<wire::Arrival> Desk::take_older(const wire::Arrival& than) {
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto held =
+        std::find_if(held_.begin(), held_.end(), [&](const auto& h) { return same_client(h, than); });
+    if (held != held_.end()) {
+      std::optional<wire::Arrival> taken(std::move(*held));
+      held_.erase(held);
+      return taken;
+    }
+  }
+  return queue_.take_if([&](const wire::Arrival& queued) { return same_client(queued, than); });
+}
+
+void Desk::enqueue(wire::Arrival arrival) {
+  const auto displaced = queue_.push(std::move(arrival));
+  if (!displaced) return;
+  if (stopping_)
+    refuse(*displaced, Reason::shutting_down, "the server stops");
+  else
+    refuse(*displaced, Reason::overloaded, fmt::format("{} requests are waiting", options_.queue));
+}
+
+void Desk::release() {
+  const auto now = std::chrono::steady_clock::now();
+  std::vector<wire::Arrival> due;
+  {
+    const std::scoped_lock lock(mutex_);
+    std::erase_if(held_, [&](wire::Arrival& held) {
+      if (!stopping_ && now - held.at < options_.hold && !backend_.ready(held.request.stamp_ns)) return false;
+      due.push_back(std::move(held));
+      return true;
+    });
+  }
+  for (auto& arrival : due) enqueue(std::move(arrival));
+}
+
+void Desk::work() {
+  while (const auto arrival = queue_.pop({})) {
+    SpotReply reply;
+    try {
+      reply = backend_.locate(arrival->request);
+    } catch (const std::exception& error) {  // a worker must not take the server with it
+      log::error("request {} of {}: {}", arrival->request.seq, arrival->from.client_id, error.what());
+      reply = refusal(arrival->request, Reason::not_found, fmt::format("internal error: {}", error.what()));
+    }
+    {
+      const std::scoped_lock lock(mutex_);
+      sessions_.answered(arrival->from, arrival->request.seq);
+    }
+    finish(*arrival, std::move(reply));
+  }
+}
+
+void Desk::refuse(const wire::Arrival& arrival, Reason reason, std::string text) {
+  log::debug("request {} of {} refused: {}: {}", arrival.request.seq, arrival.from.client_id, name_of(reason),
+             text);
+  finish(arrival, refusal(arrival.request, reason, std::move(text)));
+}
+
+void Desk::finish(const wire::Arrival& arrival, SpotReply reply) {
+  reply.latency_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - arrival.at).count();
+  ++answered_;
+  if (reply.status == SpotStatus::verified) ++verified_;
+  if (reply.status == SpotStatus::refused) ++refused_;
+  answer_(arrival.from, std::move(reply));
+}
+
+void Desk::client_left(const std::string& client_id) {
+  {
+    const std::scoped_lock lock(mutex_);
+    sessions_.forget_client(client_id);
+  }
+  if (backend_.forget) backend_.forget(client_id);
+}
+
+void Desk::publication_gone(std::uint64_t publication) {
+  const std::scoped_lock lock(mutex_);
+  sessions_.forget_publication(publication);
+}
+
+void Desk::stop() {
+  stopping_ = true;
+  release();
+  queue_.close();
+  for (auto& worker : workers_)
+    if (worker.joinable()) worker.join();
+}
+
+ServiceCounters Desk::counters() const {
+  const std::scoped_lock lock(mutex_);
+  return {answered_, verified_, refused_, static_cast<std::uint32_t>(held_.size() + queue_.size())};
+}
+
+}  // namespace liloc

@@ -1,0 +1,63 @@
+#pragma once
+// Between the network and the localizer: admits requests, keeps them in a bounded queue, has workers answer
+// them. Whatever happens to a request, it is answered exactly once.
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "common/base/bounded_queue.hpp"
+#include "server/service/service_options.hpp"
+#include "server/service/sessions.hpp"
+
+namespace liloc {
+
+struct ServiceCounters {
+  std::uint64_t answered = 0, verified = 0, refused = 0;  ///< since the start; answered counts every reply
+  std::uint32_t queued = 0;                               ///< waiting now, held ones included
+};
+
+class Desk {
+ public:
+  using Answer = std::function<void(const wire::Sender&, SpotReply)>;
+
+  /// `answer` is called from any of the desk's threads and from `submit`; never while a lock is held.
+  Desk(ServiceOptions options, ServiceBackend backend, Answer answer);
+  ~Desk();
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+
+  /// Never blocks for long. Any thread.
+  void submit(wire::Arrival arrival);
+  /// Sends on the held requests whose time has come: that are ready, or have waited long enough. Any thread.
+  void release();
+  void client_left(const std::string& client_id);
+  void publication_gone(std::uint64_t publication);
+  /// Refuses new requests, finishes what waits, joins the workers. Safe to call twice.
+  void stop();
+
+  [[nodiscard]] ServiceCounters counters() const;
+
+ private:
+  void work();
+  void enqueue(wire::Arrival arrival);
+  [[nodiscard]] std::optional<wire::Arrival> take_older(const wire::Arrival& than);
+  void refuse(const wire::Arrival& arrival, Reason reason, std::string text);
+  void finish(const wire::Arrival& arrival, SpotReply reply);
+
+  const ServiceOptions options_;
+  const ServiceBackend backend_;
+  const Answer answer_;
+  mutable std::mutex mutex_;  // guards sessions_ and held_
+  Sessions sessions_;
+  std::deque<wire::Arrival> held_;
+  BoundedQueue<wire::Arrival> queue_;
+  std::atomic<bool> stopping_ = false;
+  std::atomic<std::uint64_t> answered_ = 0, verified_ = 0, refused_ = 0;
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace liloc

@@ -1,0 +1,29 @@
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "common/protocol/spot.hpp"
+
+namespace liloc {
+
+struct ServiceOptions {
+  std::string server_id = "liloc";
+  int workers = 1;                      ///< requests worked on at once; 1..64
+  std::size_t queue = 64;               ///< requests waiting; 1..4096. When it is full the oldest is refused
+  double max_rate_hz = 20;              ///< per run of a client; a burst of one second's worth passes
+  std::size_t max_clients = 512;        ///< 1..4096
+  std::chrono::milliseconds hold{100};  ///< how long a request waits for the ceiling to catch up; 0: never
+  [[nodiscard]] Result<ServiceOptions> validated() const;  ///< the error names the field and its range
+};
+
+/// What the service puts its requests to. `locate` runs on worker threads side by side; the others on the
+/// dispatcher's thread.
+struct ServiceBackend {
+  std::function<SpotReply(const SpotRequest&)> locate = {};
+  std::function<void(const std::string& client_id)> forget = {};  ///< the client left or began anew
+  std::function<bool(StampNs stamp_ns)> ready = {};  ///< is the ceiling seen as of this stamp? empty: always
+};
+
+}  // namespace liloc

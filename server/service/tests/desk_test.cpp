@@ -1,0 +1,273 @@
+#include "server/service/desk.hpp"
+
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <map>
+
+namespace liloc {
+namespace {
+
+using namespace std::chrono_literals;
+using Key = std::pair<std::string, std::uint64_t>;
+
+wire::Arrival arrival(const std::string& client, std::uint64_t seq, std::uint64_t session = 1) {
+  wire::Arrival a;
+  a.from = {client, std::hash<std::string>{}(client) + session, session};
+  a.request.client_id = client;
+  a.request.seq = seq;
+  a.request.stamp_ns = static_cast<StampNs>(seq);
+  a.at = std::chrono::steady_clock::now();
+  return a;
+}
+
+// Collects every answer; a count other than one for any request is a fault of the desk.
+class Answers {
+ public:
+  Desk::Answer sink() {
+    return [this](const wire::Sender& to, SpotReply reply) {
+      const std::scoped_lock lock(mutex_);
+      EXPECT_EQ(to.client_id, reply.client_id);
+      EXPECT_GE(reply.latency_ms, 0);
+      ++count_[{reply.client_id, reply.seq}];
+      replies_[{reply.client_id, reply.seq}] = std::move(reply);
+      ++total_;
+      changed_.notify_all();
+    };
+  }
+  bool wait_for(std::size_t total) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 10s, [&] { return total_ >= total; });
+  }
+  Reason reason(const std::string& client, std::uint64_t seq) {
+    const std::scoped_lock lock(mutex_);
+    const auto found = replies_.find({client, seq});
+    return found == replies_.end() ? Reason::no_answer : found->second.reason;
+  }
+  void expect_each_once(std::size_t requests) {
+    const std::scoped_lock lock(mutex_);
+    EXPECT_EQ(count_.size(), requests);
+    for (const auto& [key, count] : count_) EXPECT_EQ(count, 1) << key.first << " " << key.second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<Key, int> count_;
+  std::map<Key, SpotReply> replies_;
+  std::size_t total_ = 0;
+};
+
+// A localizer that works on one request until the test opens the gate.
+class Gate {
+ public:
+  SpotReply pass(const SpotRequest& request) {
+    std::unique_lock lock(mutex_);
+    ++inside_;
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return open_; });
+    SpotReply reply = refusal(request, Reason::confirmed, "");
+    reply.status = SpotStatus::verified;
+    return reply;
+  }
+  void wait_inside() {
+    std::unique_lock lock(mutex_);
+    ASSERT_TRUE(changed_.wait_for(lock, 10s, [&] { return inside_ > 0; }));
+  }
+  void open() {
+    const std::scoped_lock lock(mutex_);
+    open_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool open_ = false;
+  int inside_ = 0;
+};
+
+SpotReply verified(const SpotRequest& request) {
+  SpotReply reply = refusal(request, Reason::confirmed, "");
+  reply.status = SpotStatus::verified;
+  return reply;
+}
+
+TEST(Desk, AFullQueueRefusesTheOldest) {
+  Gate gate;
+  Answers answers;
+  Desk desk({.queue = 2}, {.locate = [&](const SpotRequest& r) { return gate.pass(r); }}, answers.sink());
+  desk.submit(arrival("a", 1));
+  gate.wait_inside();
+  for (const char* client : {"b", "c", "d"}) desk.submit(arrival(client, 1));
+  EXPECT_EQ(answers.reason("b", 1), Reason::overloaded);
+  EXPECT_EQ(desk.counters().queued, 2U);
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(4));
+  EXPECT_EQ(answers.reason("d", 1), Reason::confirmed);
+  answers.expect_each_once(4);
+}
+
+TEST(Desk, ANewerRequestOfTheSameClientTakesTheOlderOnesPlace) {
+  Gate gate;
+  Answers answers;
+  Desk desk({}, {.locate = [&](const SpotRequest& r) { return gate.pass(r); }}, answers.sink());
+  desk.submit(arrival("busy", 1));
+  gate.wait_inside();
+  desk.submit(arrival("a", 1));
+  desk.submit(arrival("a", 3));
+  desk.submit(arrival("a", 2));  // overtaken on the way
+  EXPECT_EQ(answers.reason("a", 1), Reason::superseded);
+  EXPECT_EQ(answers.reason("a", 2), Reason::superseded);
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(4));
+  EXPECT_EQ(answers.reason("a", 3), Reason::confirmed);
+  answers.expect_each_once(4);
+}
+
+TEST(Desk, ARequestNoNewerThanTheLastAnswerIsLate) {
+  Answers answers;
+  Desk desk({}, {.locate = verified}, answers.sink());
+  desk.submit(arrival("a", 5));
+  ASSERT_TRUE(answers.wait_for(1));
+  desk.submit(arrival("a", 4));
+  EXPECT_EQ(answers.reason("a", 4), Reason::late);
+}
+
+TEST(Desk, ARestartedClientBeginsAnewAndIsForgotten) {
+  Answers answers;
+  std::atomic<int> forgotten = 0;
+  Desk desk({}, {.locate = verified, .forget = [&](const std::string&) { ++forgotten; }}, answers.sink());
+  desk.submit(arrival("a", 5, 1));
+  ASSERT_TRUE(answers.wait_for(1));
+  desk.submit(arrival("a", 1, 2));
+  ASSERT_TRUE(answers.wait_for(2));
+  EXPECT_EQ(answers.reason("a", 1), Reason::confirmed);
+  EXPECT_EQ(forgotten, 1);
+  desk.client_left("a");
+  EXPECT_EQ(forgotten, 2);
+}
+
+TEST(Desk, AFloodIsLimitedPerClient) {
+  Answers answers;
+  Desk desk({.max_rate_hz = 1}, {.locate = verified}, answers.sink());
+  for (std::uint64_t seq = 1; seq <= 50; ++seq) desk.submit(arrival("flood", seq));
+  desk.submit(arrival("calm", 1));
+  ASSERT_TRUE(answers.wait_for(51));
+  EXPECT_EQ(answers.reason("flood", 50), Reason::rate_limit);
+  EXPECT_EQ(answers.reason("calm", 1), Reason::confirmed);
+  answers.expect_each_once(51);
+}
+
+TEST(Desk, AProblemSeenOnTheWayIsPassedOn) {
+  Answers answers;
+  Desk desk({}, {.locate = verified}, answers.sink());
+  auto bad = arrival("a", 1);
+  bad.problem = Reason::identity;
+  desk.submit(std::move(bad));
+  EXPECT_EQ(answers.reason("a", 1), Reason::identity);
+}
+
+TEST(Desk, AnExceptionOfTheLocalizerIsAnAnswer) {
+  Answers answers;
+  Desk desk({}, {.locate = [](const SpotRequest&) -> SpotReply { throw std::runtime_error("bug"); }},
+            answers.sink());
+  desk.submit(arrival("a", 1));
+  ASSERT_TRUE(answers.wait_for(1));
+  EXPECT_EQ(answers.reason("a", 1), Reason::not_found);
+}
+
+TEST(Desk, ARequestWaitsForTheCeilingButNotForever) {
+  Answers answers;
+  std::atomic<StampNs> seen = 0;
+  Desk desk({.hold = 500ms},
+            {.locate = verified, .forget = {}, .ready = [&](StampNs stamp) { return stamp <= seen; }},
+            answers.sink());
+  desk.submit(arrival("a", 1));
+  desk.submit(arrival("b", 2));
+  desk.release();
+  EXPECT_EQ(desk.counters().queued, 2U);
+  seen = 1;
+  desk.release();
+  ASSERT_TRUE(answers.wait_for(1));
+  EXPECT_EQ(answers.reason("a", 1), Reason::confirmed);
+  EXPECT_EQ(answers.reason("b", 2), Reason::no_answer);
+  std::this_thread::sleep_for(550ms);
+  desk.release();
+  ASSERT_TRUE(answers.wait_for(2));
+  EXPECT_EQ(answers.reason("b", 2), Reason::confirmed);
+}
+
+TEST(Desk, StoppingFinishesWhatWaitsAndRefusesTheRest) {
+  Gate gate;
+  Answers answers;
+  Desk desk({},
+            {.locate = [&](const SpotRequest& r) { return gate.pass(r); },
+             .forget = {},
+             .ready = [](StampNs stamp) { return stamp != 9; }},
+            answers.sink());
+  desk.submit(arrival("a", 1));
+  gate.wait_inside();
+  desk.submit(arrival("b", 1));
+  desk.submit(arrival("held", 9));
+  std::thread opener([&] {
+    std::this_thread::sleep_for(50ms);
+    gate.open();
+  });
+  desk.stop();
+  opener.join();
+  desk.submit(arrival("c", 1));
+  EXPECT_EQ(answers.reason("a", 1), Reason::confirmed);
+  EXPECT_EQ(answers.reason("b", 1), Reason::confirmed);
+  EXPECT_EQ(answers.reason("held", 9), Reason::confirmed);
+  EXPECT_EQ(answers.reason("c", 1), Reason::shutting_down);
+  answers.expect_each_once(4);
+}
+
+// Eight threads, four workers, a queue of eight, a stop in the midst: each request is answered exactly once.
+TEST(Desk, UnderLoadEachRequestIsAnsweredExactlyOnce) {
+  Answers answers;
+  const auto locate = [](const SpotRequest& r) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200 + r.seq % 7 * 100));
+    return verified(r);
+  };
+  std::atomic<StampNs> seen = 0;
+  Desk desk({.workers = 4, .queue = 8, .max_rate_hz = 10'000, .hold = 5ms},
+            {.locate = locate, .forget = {}, .ready = [&](StampNs stamp) { return stamp <= seen; }},
+            answers.sink());
+  constexpr int kThreads = 8;
+  constexpr std::uint64_t kEach = 300;
+  std::vector<std::thread> clients;
+  for (int t = 0; t < kThreads; ++t)
+    clients.emplace_back([&, t] {
+      for (std::uint64_t seq = 1; seq <= kEach; ++seq) {
+        desk.submit(arrival("client" + std::to_string(t), seq));
+        if (seq % 3 == 0) std::this_thread::sleep_for(300us);
+        seen = static_cast<StampNs>(seq > 2 ? seq - 2 : 0);
+        if (seq % 5 == 0) desk.release();
+      }
+    });
+  std::this_thread::sleep_for(20ms);
+  desk.stop();
+  for (auto& client : clients) client.join();
+  answers.expect_each_once(kThreads * kEach);
+  const auto counters = desk.counters();
+  EXPECT_EQ(counters.answered, kThreads * kEach);
+  EXPECT_EQ(counters.verified + counters.refused, kThreads * kEach);
+  EXPECT_EQ(counters.queued, 0U);
+}
+
+TEST(Desk, OptionsOutOfRangeAreNamed) {
+  for (const auto& [options, field] : {std::pair{ServiceOptions{.workers = 0}, "workers"},
+                                       {ServiceOptions{.queue = 0}, "queue"},
+                                       {ServiceOptions{.max_rate_hz = 0}, "max_rate_hz"},
+                                       {ServiceOptions{.max_clients = 0}, "max_clients"},
+                                       {ServiceOptions{.server_id = "no blanks"}, "server_id"}}) {
+    const auto valid = options.validated();
+    ASSERT_FALSE(valid) << field;
+    EXPECT_NE(valid.error().message.find(field), std::string::npos) << valid.error().message;
+  }
+}
+
+}  // namespace
+}  // namespace liloc

@@ -1,0 +1,58 @@
+#pragma once
+// The ceiling's streams over DDS, to frames. Each LiDAR may send depth images or points; one that falls silent
+// and comes back is simply heard again.
+//
+//   auto ingest = Ingest::create(dispatcher, site, {.add_depth = ..., .add_points = ...});
+//   dispatcher.start();
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "common/geometry/camera.hpp"
+#include "common/geometry/cloud.hpp"
+#include "common/wire/dispatcher.hpp"
+#include "common/wire/status.hpp"
+
+namespace liloc {
+
+/// Where frames go; `lidar` is the index into the site. Run on the dispatcher's thread. An error counts as a
+/// malformed frame. `on_frame`, where set, follows each frame that was taken.
+struct FrameSink {
+  std::function<Status(std::size_t lidar, DepthImage)> add_depth = {};
+  std::function<Status(std::size_t lidar, StampNs, const Cloud& cloud_sensor)> add_points = {};
+  std::function<void()> on_frame = {};
+};
+
+class Ingest {
+ public:
+  /// Before the dispatcher starts; the dispatcher must be stopped before the ingest goes. The site is the
+  /// calibration: a stream of another size is malformed, a camera_info that differs in focal length by over 1 %
+  /// is warned of once.
+  [[nodiscard]] static Result<std::unique_ptr<Ingest>> create(wire::Dispatcher& dispatcher, const Site& site,
+                                                              FrameSink sink);
+  ~Ingest();
+  Ingest(const Ingest&) = delete;
+  Ingest& operator=(const Ingest&) = delete;
+
+  /// In the order of the site. Any thread.
+  [[nodiscard]] std::vector<wire::LidarHealth> health() const;
+  /// Whether every LiDAR that is heard has shown the room as of `stamp_ns` or later. Any thread.
+  [[nodiscard]] bool seen(StampNs stamp_ns) const;
+
+ private:
+  struct Lidar;
+  explicit Ingest(FrameSink sink);
+
+  [[nodiscard]] Status subscribe(wire::Dispatcher& dispatcher, std::size_t index);
+  void take(std::size_t index, StampNs stamp_ns, const Status& taken);
+  void drop(std::size_t index, const std::string& error);
+  void check_camera(std::size_t index, const Result<Camera>& info);
+  void report_changes();
+
+  const FrameSink sink_;
+  mutable std::mutex mutex_;  // guards what changes in lidars_
+  std::vector<std::unique_ptr<Lidar>> lidars_;
+};
+
+}  // namespace liloc

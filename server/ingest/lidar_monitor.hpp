@@ -1,0 +1,40 @@
+#pragma once
+// The health of one ceiling LiDAR, from when its frames come. Times are passed in: no clock in here.
+#include <chrono>
+#include <deque>
+#include <string>
+
+#include "common/wire/status.hpp"
+
+namespace liloc {
+
+class LidarMonitor {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// `rate_hz` is what the site expects; 0 where it does not say.
+  LidarMonitor(std::string id, double rate_hz, Time start)
+      : id_(std::move(id)), rate_hz_(rate_hz), start_(start) {}
+
+  void on_frame(Time now);
+  void on_malformed(Time now, const std::string& error);
+
+  /// waiting: nothing yet, and that for less than the limit; silent: no good frame for five periods, at least
+  /// one second; malformed: so were the last three, or all of
+  /// late; slow: under half of the expected rate over two seconds.
+  [[nodiscard]] wire::LidarHealth assess(Time now) const;
+
+ private:
+  static constexpr std::chrono::seconds kWindow{2};
+
+  [[nodiscard]] std::chrono::duration<double> silence_limit() const;
+
+  std::string id_;
+  double rate_hz_;
+  Time start_, last_frame_, last_malformed_;
+  std::deque<Time> recent_;  // frames of the last two seconds, at most 512
+  std::uint64_t frames_ = 0, malformed_ = 0, malformed_in_a_row_ = 0;
+  std::string last_error_;
+};
+
+}  // namespace liloc

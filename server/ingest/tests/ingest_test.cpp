@@ -1,0 +1,151 @@
+// Ceiling streams over DDS on loopback, to frames and health.
+#include "server/ingest/ingest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "common/wire/sensor_publishers.hpp"
+
+namespace liloc {
+namespace {
+
+using namespace std::chrono_literals;
+using wire::LidarState;
+
+constexpr Camera kCamera{32, 24, 30, 30, 16, 12, 0.001};
+
+Site two_lidars() {
+  Site site;
+  site.global_lidars = {{"ceiling0", kCamera, 10, Pose::Identity()},
+                        {"ceiling1", kCamera, 10, Pose::Identity()}};
+  return site;
+}
+
+DepthImage image(StampNs stamp_ns, int width = kCamera.width) {
+  DepthImage depth{stamp_ns, width, kCamera.height, {}};
+  depth.units.assign(static_cast<std::size_t>(width * kCamera.height), 2000);
+  depth.units[5] = 1234;
+  return depth;
+}
+
+bool eventually(const std::function<bool()>& holds, std::chrono::milliseconds limit = 5s) {
+  for (auto waited = 0ms; waited < limit; waited += 10ms, std::this_thread::sleep_for(10ms))
+    if (holds()) return true;
+  return false;
+}
+
+// An ingest that counts what it hands on; its domain is the test's.
+struct Ceiling {
+  explicit Ceiling(int domain)
+      : seat(wire::Participant::create({.domain = domain, .role = wire::Role::server}).value()),
+        dispatcher(wire::Dispatcher::create(seat).value()) {
+    FrameSink sink;
+    sink.add_depth = [this](std::size_t lidar, const DepthImage& depth) -> Status {
+      if (depth.stamp_ns == 666) return fail("stamp is 666");
+      ++depth_frames[lidar];
+      value_at_5 = depth.units[5];
+      return {};
+    };
+    sink.add_points = [this](std::size_t lidar, StampNs, const Cloud& cloud) -> Status {
+      ++point_frames[lidar];
+      points = cloud.size();
+      return {};
+    };
+    sink.on_frame = [this] { ++told; };
+    ingest = Ingest::create(*dispatcher, two_lidars(), std::move(sink)).value();
+    dispatcher->start();
+  }
+  ~Ceiling() { dispatcher->stop(); }
+
+  wire::Participant seat;
+  std::unique_ptr<wire::Dispatcher> dispatcher;
+  std::array<std::atomic<int>, 2> depth_frames{}, point_frames{};
+  std::atomic<int> told = 0, value_at_5 = 0;
+  std::atomic<std::size_t> points = 0;
+  std::unique_ptr<Ingest> ingest;
+};
+
+TEST(Ingest, ImagesArriveAsFramesOfTheirLidar) {
+  Ceiling ceiling(121);
+  const auto publisher = wire::DepthPublisher::create(ceiling.seat, "ceiling1", kCamera);
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  ASSERT_TRUE(eventually([&] { return publisher->readers() == 1; }));
+  EXPECT_TRUE(ceiling.ingest->seen(100)) << "nobody waits for LiDARs that were never heard";
+  ASSERT_TRUE(publisher->publish(image(50)));
+  ASSERT_TRUE(eventually([&] { return ceiling.told == 1; }));
+  EXPECT_EQ(ceiling.depth_frames[1], 1);
+  EXPECT_EQ(ceiling.depth_frames[0], 0);
+  EXPECT_EQ(ceiling.value_at_5, 1234);
+  EXPECT_EQ(ceiling.ingest->health()[1].frames, 1U);
+  EXPECT_FALSE(ceiling.ingest->seen(100));
+  EXPECT_TRUE(ceiling.ingest->seen(50));
+}
+
+TEST(Ingest, PointsArriveToo) {
+  Ceiling ceiling(122);
+  const auto publisher = wire::PointsPublisher::create(ceiling.seat, "ceiling0");
+  ASSERT_TRUE(publisher);
+  ASSERT_TRUE(eventually([&] { return publisher->readers() == 1; }));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  ASSERT_TRUE(publisher->publish(1, Cloud{{{1, 2, 3}, {nan, 0, 0}, {4, 5, 6}}, {}}));
+  ASSERT_TRUE(eventually([&] { return ceiling.point_frames[0] == 1; }));
+  EXPECT_EQ(ceiling.points, 2U);
+}
+
+TEST(Ingest, FramesOfAnotherSizeAreCountedAndNamed) {
+  Ceiling ceiling(123);
+  Camera wide = kCamera;
+  wide.width = 40;
+  const auto publisher = wire::DepthPublisher::create(ceiling.seat, "ceiling0", wide);
+  ASSERT_TRUE(publisher);
+  ASSERT_TRUE(eventually([&] { return publisher->readers() == 1; }));
+  ASSERT_TRUE(publisher->publish(image(1, 40)));
+  ASSERT_TRUE(
+      eventually([&] { return ceiling.ingest->health()[0].malformed == 2; }));  // the image and its info
+  const auto health = ceiling.ingest->health()[0];
+  EXPECT_EQ(health.state, LidarState::malformed);
+  EXPECT_NE(health.last_error.find("40 x 24"), std::string::npos) << health.last_error;
+  EXPECT_NE(health.last_error.find("32 x 24"), std::string::npos) << health.last_error;
+  EXPECT_EQ(ceiling.depth_frames[0], 0);
+}
+
+TEST(Ingest, WhatTheGlobalCloudRefusesIsCounted) {
+  Ceiling ceiling(124);
+  const auto publisher = wire::DepthPublisher::create(ceiling.seat, "ceiling0", kCamera);
+  ASSERT_TRUE(publisher);
+  ASSERT_TRUE(eventually([&] { return publisher->readers() == 1; }));
+  ASSERT_TRUE(publisher->publish(image(666)));
+  ASSERT_TRUE(eventually([&] { return ceiling.ingest->health()[0].malformed == 1; }));
+  EXPECT_EQ(ceiling.ingest->health()[0].last_error, "stamp is 666");
+  EXPECT_EQ(ceiling.told, 0);
+}
+
+TEST(Ingest, ASilentLidarIsReportedAndComesBack) {
+  Ceiling ceiling(125);
+  {
+    const auto publisher = wire::DepthPublisher::create(ceiling.seat, "ceiling0", kCamera);
+    ASSERT_TRUE(publisher);
+    ASSERT_TRUE(eventually([&] { return publisher->readers() == 1; }));
+    ASSERT_TRUE(publisher->publish(image(1)));
+    ASSERT_TRUE(eventually([&] { return ceiling.ingest->health()[0].state == LidarState::ok; }));
+  }
+  ASSERT_TRUE(eventually([&] { return ceiling.ingest->health()[0].state == LidarState::silent; }));
+  const auto publisher = wire::DepthPublisher::create(ceiling.seat, "ceiling0", kCamera);
+  ASSERT_TRUE(publisher);
+  StampNs stamp_ns = 100;
+  EXPECT_TRUE(eventually([&] {
+    return publisher->publish(image(++stamp_ns)) && ceiling.ingest->health()[0].state == LidarState::ok;
+  }));
+}
+
+TEST(Ingest, ASiteWithoutLidarsIsRefused) {
+  const auto seat = wire::Participant::create({.domain = 126, .role = wire::Role::server});
+  ASSERT_TRUE(seat);
+  auto dispatcher = wire::Dispatcher::create(*seat).value();
+  EXPECT_FALSE(Ingest::create(*dispatcher, Site{}, {}));
+}
+
+}  // namespace
+}  // namespace liloc

@@ -24,7 +24,7 @@ struct Ranked {
   Fit fit;
 };
 
-/// Bare clouds have no free space to contradict: the share of the source that fits decides.
+/// Bare clouds have no free space to contradict: the number of points that fit, normals too, decides.
 std::vector<Ranked> rank(const SpotProblem& problem, const std::vector<Candidate>& candidates, double distance_m) {
   JudgeOptions options;
   options.refine_most = options.keep = 20;
@@ -32,7 +32,7 @@ std::vector<Ranked> rank(const SpotProblem& problem, const std::vector<Candidate
   for (const Hypothesis& h : judge_candidates(problem, candidates, options))
     ranked.push_back({h, fit_of(problem.target, problem.query.cloud, h.T_map_sensor(), distance_m)});
   std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.fit.fitness > b.fit.fitness; });
+                   [](const Ranked& a, const Ranked& b) { return a.hypothesis.alignment.pairs > b.hypothesis.alignment.pairs; });
   return ranked;
 }
 
@@ -57,6 +57,7 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   if (options.gravity) problem.up_sensor = Eigen::Vector3d::UnitZ();
   FeatureSearchOptions features;
   features.grid = false;
+  features.iterations = 200000;
   const auto candidates =
       options.gravity ? GravityProposer().propose(problem) : FeatureProposer(features).propose(problem);
   const auto ranked = rank(problem, candidates, 1.5 * voxel);
@@ -66,8 +67,9 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   result.T_target_source = best.hypothesis.T_map_sensor();
   result.fitness = best.fit.fitness;
   result.rmse_m = best.fit.inlier_rmse_m;
-  result.margin = ranked.size() > 1 && result.fitness > 0 ? 1.0 - ranked[1].fit.fitness / result.fitness : 1.0;
-  result.trusted = result.fitness >= 0.25 && result.margin >= 0.15 && best.hypothesis.alignment.pairs >= 100;
+  const auto pairs = [](const Ranked& r) { return static_cast<double>(r.hypothesis.alignment.pairs); };
+  result.margin = ranked.size() > 1 && pairs(best) > 0 ? 1.0 - pairs(ranked[1]) / pairs(best) : 1.0;
+  result.trusted = result.fitness >= 0.25 && result.margin >= 0.20 && best.hypothesis.alignment.pairs >= 100;
   return result;
 }
 

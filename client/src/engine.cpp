@@ -17,8 +17,8 @@ namespace liloc {
 namespace {
 
 constexpr int kSilentIntervals = 3;
-constexpr std::size_t kFewestSurfels = 60;     // a frame with fewer cannot be matched
-constexpr std::size_t kMostLocalPoses = 250;   // a message holds 256; older ones of a long silence are left out
+constexpr std::size_t kFewestSurfels = 60;    // a frame with fewer cannot be matched
+constexpr std::size_t kMostLocalPoses = 250;  // a message holds 256; older ones of a long silence are left out
 constexpr double kOdomSdM = 0.01, kOdomSdRad = 0.005, kOdomSdShare = 0.01;  // floor, and share of path and turn
 
 OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
@@ -145,8 +145,10 @@ Result<FrameResult> Engine::Impl::add_depth(const DepthImage& image) {
       extract_surfels(*cloud, Eigen::Vector3f::Zero(), {.size_m = 2 * options.voxel_size_m});
   const bool enough = surfels.size() >= kFewestSurfels;
   const bool informative = spread.informative() && enough;
-  // A spike or drop is a reason not to ask the server; whether the frame fits the map the odometry judges itself.
-  const bool matchable = enough && spread.fault != FrameFault::covered && spread.fault != FrameFault::too_few_points;
+  // A spike or drop is a reason not to ask the server; whether the frame fits the map the odometry judges
+  // itself.
+  const bool matchable =
+      enough && spread.fault != FrameFault::covered && spread.fault != FrameFault::too_few_points;
   const OdometryStep step = odometry.step(small, surfels, matchable, imu ? &*imu : nullptr);
   note_motion(step);
   if (local_poses.size() >= kMostLocalPoses) local_poses.erase(local_poses.begin());
@@ -198,7 +200,9 @@ std::optional<SpotRequest> Engine::take_request() {
   return std::exchange(impl_->request, std::nullopt);
 }
 
-std::vector<std::uint64_t> Engine::take_unanswered() { return std::exchange(impl_->unanswered, {}); }
+std::vector<std::uint64_t> Engine::take_unanswered() {
+  return std::exchange(impl_->unanswered, {});
+}
 
 void Engine::add_reply(const SpotReply& reply) {
   impl_->schedule.answered(reply.seq);

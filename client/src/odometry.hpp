@@ -13,8 +13,13 @@ struct OdometryOptions {
   double max_range_m = 8.5;
   std::optional<Pose> T_imu_sensor;
   double cell_m = 0.10;
-  StampNs coast_ns = from_ms(2000);  ///< longest stretch bridged by the guess; half of it without an IMU
-  double min_overlap = 0.35;         ///< of the frame with the map, below which a match is not believed
+  StampNs coast_ns =
+      from_ms(2000);  ///< longest stretch over which the guess moves on; half of it without an IMU
+  StampNs give_up_ns = from_ms(700);  ///< of usable frames that fit nothing, after which a new segment starts
+  double min_overlap = 0.25;          ///< of the frame with the map, below which a match is not believed
+  double min_overlap_lost = 0.25;     ///< the same where no guess speaks for the match, but the view agrees:
+  double max_refuted_share = 0.18;    ///< of the map in view that the image may look through
+  StampNs recover_ns = from_ms(300);  ///< between two attempts to find the place by features
   double keyframe_m = 0.05, keyframe_rad = 0.035;
   StampNs keyframe_ns = from_ms(300);  ///< motion or time since the last keyframe that makes the next one
   std::uint64_t seed = 1;
@@ -31,8 +36,8 @@ struct OdometryStep {
 };
 
 /// Local registration: each frame against the map of the device's surroundings, from a guess by the IMU or by
-/// constant velocity. Where the scene is hidden the guess carries on for a bounded time; longer gaps start a
-/// new segment with an empty map. Not thread-safe.
+/// constant velocity; by features (FPFH, RANSAC) where that fails. Where the scene is hidden the guess carries
+/// on for a bounded time; longer gaps start a new segment with an empty map. Not thread-safe.
 class Odometry {
  public:
   explicit Odometry(const OdometryOptions& options);
@@ -44,20 +49,30 @@ class Odometry {
 
  private:
   [[nodiscard]] MotionGuess guess(StampNs stamp_ns, const ImuTrack* imu);
-  [[nodiscard]] bool believable(const ScanMatch& match, const MotionGuess& guess) const;
-  [[nodiscard]] std::optional<ScanMatch> match(const std::vector<Surfel>& frame, const MotionGuess& guess,
-                                               StampNs stamp_ns, OdometryStep& step) const;
+  /// Whether the guess and the overlap speak for a match.
+  [[nodiscard]] bool believable(const ScanMatch& match, const MotionGuess& guess,
+                                const DepthImage& image) const;
+  /// The same where there is no guess: the image must not look through what the map holds.
+  [[nodiscard]] bool consistent(const ScanMatch& match, const DepthImage& image) const;
+  /// From the guess, and by features where that fails.
+  [[nodiscard]] std::optional<ScanMatch> match(const DepthImage& image, const std::vector<Surfel>& frame,
+                                               const MotionGuess& guess, OdometryStep& step);
   void accept(const ScanMatch& match, StampNs stamp_ns, ImuTrack* imu, OdometryStep& step);
-  void coast(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step);
+  /// Dead reckoning: the guess is the pose.
+  void reckon(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step);
+  void coast(const MotionGuess& guess, StampNs stamp_ns, bool usable, OdometryStep& step);
+  void start_segment(StampNs stamp_ns);
   void remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor);
 
   OdometryOptions options_;
   LocalMap map_;
   std::uint32_t segment_ = 0;
   bool started_ = false;
-  StampNs last_ns_ = 0;      ///< of the last frame
-  StampNs anchored_ns_ = 0;  ///< of the last matched frame
+  StampNs last_ns_ = 0;       ///< of the last frame
+  StampNs unmatched_ns_ = 0;  ///< of the first usable frame since the last match that fits nothing; 0: none
+  StampNs anchored_ns_ = 0;   ///< of the last matched frame
   StampNs keyframe_ns_ = 0;
+  StampNs recovered_ns_ = 0;  ///< of the last attempt by features
   Pose T_odom_last_ = Pose::Identity(), T_odom_keyframe_ = Pose::Identity();
   Eigen::Vector3d velocity_odom_ = Eigen::Vector3d::Zero();      ///< of the sensor, m/s
   Eigen::Vector3d velocity_imu_odom_ = Eigen::Vector3d::Zero();  ///< of the IMU after the guess, m/s

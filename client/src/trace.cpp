@@ -32,7 +32,8 @@ std::string tum_row(StampNs stamp_ns, const Pose& T) {
 Status TraceWriter::start(std::ofstream& file, const char* name, const char* header) {
   file.open(folder_ / name, std::ios::trunc);
   file << header << std::endl;
-  if (!file) return fail("{}: cannot be written: check the folder's permissions and space", (folder_ / name).string());
+  if (!file)
+    return fail("{}: cannot be written: check the folder's permissions and space", (folder_ / name).string());
   return {};
 }
 
@@ -52,8 +53,8 @@ Status TraceWriter::healthy() const {
 }
 
 Status TraceWriter::on_frame(const FrameResult& frame) {
-  local_ << fmt::format("{},{:d},{},{:d},{:.3f},{}", frame.stamp_ns, frame.informative, frame.method, frame.converged,
-                        frame.latency_ms, numbers(frame.T_odom_sensor, ','))
+  local_ << fmt::format("{},{:d},{},{:d},{:.3f},{}", frame.stamp_ns, frame.informative, frame.method,
+                        frame.converged, frame.latency_ms, numbers(frame.T_odom_sensor, ','))
          << std::endl;
   if (frame.T_map_sensor) {
     online_ << tum_row(frame.stamp_ns, *frame.T_map_sensor) << std::flush;
@@ -62,7 +63,9 @@ Status TraceWriter::on_frame(const FrameResult& frame) {
   return healthy();
 }
 
-void TraceWriter::on_request(const SpotRequest& request) { pending_[request.seq] = request.stamp_ns; }
+void TraceWriter::on_request(const SpotRequest& request) {
+  pending_[request.seq] = request.stamp_ns;
+}
 
 void TraceWriter::on_timeout(std::uint64_t seq) {
   const auto it = pending_.find(seq);
@@ -81,8 +84,8 @@ void TraceWriter::write_spot(const SpotReply& reply) {
                         reply.verified(), name_of(reply.reason),
                         reply.T_map_sensor ? numbers(*reply.T_map_sensor, ',') : ",,,,,,");
   if (answered)
-    spots_ << fmt::format(",{:.4f},{:.5f},{:.4f},{:.4f},{:.3f}", reply.fitness, reply.inlier_rmse_m, reply.overlap,
-                          reply.margin, reply.latency_ms);
+    spots_ << fmt::format(",{:.4f},{:.5f},{:.4f},{:.4f},{:.3f}", reply.fitness, reply.inlier_rmse_m,
+                          reply.overlap, reply.margin, reply.latency_ms);
   else
     spots_ << ",,,,,";
   spots_ << std::endl;

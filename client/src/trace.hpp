@@ -23,8 +23,8 @@ class TraceWriter {
   /// Its row with the reason no_answer now; a later reply gets no row.
   void on_timeout(std::uint64_t seq);
   void on_reply(const SpotReply& reply, const SpotRequest& request);
-  /// Writes what is still open and trajectory.tum: each located frame with the corrections of the verified spots
-  /// before and after it, mixed by their distance in time.
+  /// Writes what is still open and trajectory.tum: each located frame with the corrections of the verified
+  /// spots before and after it, mixed by their distance in time.
   [[nodiscard]] Status close();
 
  private:

@@ -26,6 +26,40 @@ std::uint16_t nearest_around(const DepthImage& image, int u, int v) {
   return nearest;
 }
 
+enum class Sight { outside, agree, through, hidden };
+
+/// Compares points of the map with a depth image.
+class Projector {
+ public:
+  Projector(const Pose& T_map_sensor, const DepthImage& image, const Camera& camera, double max_range_m)
+      : T_sensor_map_(T_map_sensor.inverse().cast<float>()),
+        image_(image),
+        fx_(static_cast<float>(camera.fx)),
+        fy_(static_cast<float>(camera.fy)),
+        cx_(static_cast<float>(camera.cx)),
+        cy_(static_cast<float>(camera.cy)),
+        scale_(static_cast<float>(camera.depth_scale_m)),
+        farthest_(static_cast<float>(max_range_m)) {}
+
+  Sight operator()(const Eigen::Vector3f& point_map) const {
+    const Eigen::Vector3f p = T_sensor_map_ * point_map;
+    if (p.z() < 0.3F || p.z() > farthest_) return Sight::outside;
+    const int u = static_cast<int>(std::lround(p.x() / p.z() * fx_ + cx_));
+    const int v = static_cast<int>(std::lround(p.y() / p.z() * fy_ + cy_));
+    if (u < 1 || v < 1 || u + 1 >= image_.width || v + 1 >= image_.height) return Sight::outside;
+    const float seen = static_cast<float>(nearest_around(image_, u, v)) * scale_;
+    if (seen == 0) return Sight::outside;
+    const float tolerance = std::max(0.15F, 0.05F * p.z());
+    if (seen > p.z() + tolerance) return Sight::through;
+    return seen < p.z() - tolerance ? Sight::hidden : Sight::agree;
+  }
+
+ private:
+  Eigen::Isometry3f T_sensor_map_;
+  const DepthImage& image_;
+  float fx_, fy_, cx_, cy_, scale_, farthest_;
+};
+
 }  // namespace
 
 LocalMap::LocalMap(const LocalMapOptions& options)
@@ -136,29 +170,29 @@ void LocalMap::trim(StampNs stamp_ns) {
 
 void LocalMap::carve(const Pose& T_map_sensor, const DepthImage& image, const Camera& camera,
                      double max_range_m) {
-  const Eigen::Isometry3f T_sensor_map = T_map_sensor.inverse().cast<float>();
-  const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
-  const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
-  const auto scale = static_cast<float>(camera.depth_scale_m);
+  const Projector project(T_map_sensor, image, camera, max_range_m);
   for (Cell& cell : cells_) {
     if (cell.surfel.count == 0) continue;
-    const Eigen::Vector3f p = T_sensor_map * cell.surfel.mean;
-    if (p.z() < 0.3F || p.z() > static_cast<float>(max_range_m)) continue;
-    const int u = static_cast<int>(std::lround(p.x() / p.z() * fx + cx));
-    const int v = static_cast<int>(std::lround(p.y() / p.z() * fy + cy));
-    if (u < 1 || v < 1 || u + 1 >= camera.width || v + 1 >= camera.height) continue;
-    const float seen = static_cast<float>(nearest_around(image, u, v)) * scale;
-    if (seen == 0) continue;
-    const float tolerance = std::max(0.15F, 0.05F * p.z());
-    if (seen > p.z() + tolerance) {
-      if (++cell.refuted >= options_.refuted_after) {
-        cell.surfel.count = 0;
-        --alive_;
-      }
-    } else if (seen > p.z() - tolerance) {
-      cell.refuted = 0;
-    }
+    const Sight sight = project(cell.surfel.mean);
+    if (sight == Sight::agree) cell.refuted = 0;
+    if (sight != Sight::through || ++cell.refuted < options_.refuted_after) continue;
+    cell.surfel.count = 0;
+    --alive_;
   }
+}
+
+LocalMap::View LocalMap::compare(const Pose& T_map_sensor, const DepthImage& image, const Camera& camera,
+                                 double max_range_m) const {
+  const Projector project(T_map_sensor, image, camera, max_range_m);
+  View view;
+  for (const Cell& cell : cells_) {
+    if (cell.surfel.count == 0) continue;
+    const Sight sight = project(cell.surfel.mean);
+    view.agree += sight == Sight::agree;
+    view.through += sight == Sight::through;
+    view.hidden += sight == Sight::hidden;
+  }
+  return view;
 }
 
 const LocalMap::Cell* LocalMap::find(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const {

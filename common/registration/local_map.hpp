@@ -34,6 +34,19 @@ class LocalMap {
   /// Removes what the depth image looks through. Paid per map surfel: about 10 ns each.
   void carve(const Pose& T_map_sensor, const DepthImage& image, const Camera& camera, double max_range_m);
 
+  /// How the map's surfels in view relate to a depth image taken from T_map_sensor.
+  struct View {
+    int agree = 0;    ///< seen at their depth
+    int through = 0;  ///< the image looks through them: they have moved, or the pose is wrong
+    int hidden = 0;   ///< something stands before them
+    /// Share of those that should be visible and are not.
+    [[nodiscard]] double refuted_share() const {
+      return agree + through == 0 ? 1.0 : static_cast<double>(through) / (agree + through);
+    }
+  };
+  [[nodiscard]] View compare(const Pose& T_map_sensor, const DepthImage& image, const Camera& camera,
+                             double max_range_m) const;
+
   /// The nearest surfel among the eight cells around `p` whose normal is within 45 degrees of `normal`, both in
   /// the map frame; null when there is none.
   [[nodiscard]] const Cell* find(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const;

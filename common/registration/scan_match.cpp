@@ -57,16 +57,19 @@ void find_pairs(const LocalMap& map, const std::vector<Source>& sources, const P
   }
 }
 
-/// Half-width of the kernel: three robust standard deviations, never under the sensor's own.
-float kernel_width(const std::vector<Pair>& pairs, const ScanMatchOptions& options) {
+/// Half-width of the kernel: first what the guess may be off, halved with each iteration down to three robust
+/// standard deviations. Never so narrow that a dominating wall silences the little that shows motion along it.
+float kernel_width(const std::vector<Pair>& pairs, double guess_sd_m, int iteration,
+                   const ScanMatchOptions& options) {
   std::vector<float> sizes;
   sizes.reserve(pairs.size());
   for (const Pair& p : pairs) sizes.push_back(std::abs(p.residual));
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
-  const float width = 3.0F * 1.4826F * *middle;
-  return std::clamp(width, 2.0F * static_cast<float>(options.sensor_sd_m),
-                    static_cast<float>(options.kernel_max_m));
+  const double noise = 3 * 1.4826 * static_cast<double>(*middle);
+  const double from_guess = 3 * guess_sd_m / (1 << std::min(iteration, 10));
+  return static_cast<float>(
+      std::clamp(std::max(noise, from_guess), options.kernel_min_m, options.kernel_max_m));
 }
 
 struct Normal {
@@ -158,7 +161,7 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
   for (match.iterations = 0; match.iterations < options.max_iterations && !match.settled; ++match.iterations) {
     find_pairs(map, sources, match.T_map_sensor, now_ns, pairs);
     if (pairs.size() < 6) break;
-    Normal n = accumulate(pairs, kernel_width(pairs, options), options);
+    Normal n = accumulate(pairs, kernel_width(pairs, guess.sd_m, match.iterations, options), options);
     const Matrix6d observed = observed_directions(n.H, options.observed_share, match.unobserved);
     add_prior(n, guess, match.T_map_sensor);
     match.information = n.H;

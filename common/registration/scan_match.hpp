@@ -21,9 +21,10 @@ struct ScanMatchOptions {
   double stop_rad = 2e-5, stop_m = 5e-5;
   double sensor_sd_m = 0.006;        ///< of a surfel's distance to a plane: noise, calibration and model
   double noise_per_m2 = 0.0008;      ///< and what grows with the square of the range
+  double kernel_min_m = 0.04;        ///< never narrower: what shows motion along a wall is to be heard
   double kernel_max_m = 0.10;        ///< farther from its plane, a surfel hardly counts
   double independent_surfels = 250;  ///< neighbours err together: no more than so many count as independent
-  double observed_share = 0.004;     ///< a direction with less of the information than so is left to the guess
+  double observed_share = 1e-4;      ///< a direction with less of the information than so is left to the guess
 };
 
 struct ScanMatch {

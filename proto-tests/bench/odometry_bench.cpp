@@ -1,5 +1,5 @@
 // Runs the client's engine without a server over recordings and says how far its odometry drifts.
-//   liloc_odometry_bench [--local cloud|inertial|dead-reckoning] [--frames] REC...
+//   liloc_odometry_bench [--local cloud|inertial|dead-reckoning] [--no-imu] [--every N] [--frames] REC...
 // Drift is the judge's figure: error of the relative pose from the first to the last frame, in per cent of the
 // path.
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ namespace {
 
 struct Options {
   LocalMethod local = LocalMethod::cloud;
-  bool frames = false, verbose = false;
+  bool frames = false, use_imu = true;
   int every = 1;
   std::vector<std::string> recordings;
 };
@@ -45,7 +45,7 @@ Result<Run> run_device(const DeviceRecording& device, const Options& options) {
   eo.client_id = device.info.id;
   eo.camera = device.info.camera;
   eo.local = options.local;
-  if (!device.imu.empty()) eo.T_imu_sensor = device.info.T_imu_sensor;
+  if (!device.imu.empty() && options.use_imu) eo.T_imu_sensor = device.info.T_imu_sensor;
   eo.still_seconds = device.info.still_seconds;
   Engine engine(eo);
   Run run;
@@ -53,7 +53,8 @@ Result<Run> run_device(const DeviceRecording& device, const Options& options) {
   for (std::size_t i = 0; i < device.depth.size(); i += static_cast<std::size_t>(options.every)) {
     const auto image = read_depth(device.depth[i], device.info.camera);
     if (!image) return tl::unexpected(image.error());
-    for (; next_imu < device.imu.size() && device.imu[next_imu].stamp_ns <= image->stamp_ns + from_ms(5);
+    for (; options.use_imu && next_imu < device.imu.size() &&
+           device.imu[next_imu].stamp_ns <= image->stamp_ns + from_ms(5);
          ++next_imu)
       if (const auto ok = engine.add_imu(device.imu[next_imu]); !ok) return tl::unexpected(ok.error());
     auto frame = engine.add_depth(*image);
@@ -139,6 +140,8 @@ int main(int argc, char** argv) {
       options.frames = true;
     } else if (arg == "--verbose") {
       liloc::log::set_sink([](liloc::log::Level, std::string_view line) { fmt::print(stderr, "{}\n", line); });
+    } else if (arg == "--no-imu") {
+      options.use_imu = false;
     } else if (arg == "--every" && i + 1 < argc) {
       options.every = std::max(1, std::atoi(argv[++i]));
     } else if (arg == "--local" && i + 1 < argc) {
@@ -153,8 +156,9 @@ int main(int argc, char** argv) {
     }
   }
   if (options.recordings.empty()) {
-    fmt::print(stderr,
-               "usage: liloc_odometry_bench [--local METHOD] [--every N] [--frames] [--verbose] REC...\n");
+    fmt::print(
+        stderr,
+        "usage: liloc_odometry_bench [--local METHOD] [--no-imu] [--every N] [--frames] [--verbose] REC...\n");
     return 2;
   }
   return liloc::run_all(options);

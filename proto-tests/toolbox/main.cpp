@@ -9,9 +9,12 @@ int run(int argc, char** argv) {
   CLI::App app("LiLoc's toolbox: live demo, recordings replayed and judged, simulated sites, clouds aligned",
                "liloc");
   app.set_version_flag("--version", LILOC_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   int exit_code = liloc::toolbox::kDone;
+  liloc::toolbox::add_demo(app, exit_code);
   liloc::toolbox::add_replay(app, exit_code);
+  liloc::toolbox::add_sim(app, exit_code);
+  liloc::toolbox::add_align(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& shown) {  // --help, --version
@@ -20,6 +23,8 @@ int run(int argc, char** argv) {
     return liloc::toolbox::complain({std::string(error.what()) + "; see liloc --help"},
                                     liloc::toolbox::kBadUsage);
   }
+  if (app.get_subcommands().empty())
+    return liloc::toolbox::complain({"a subcommand is missing; see liloc --help"}, liloc::toolbox::kBadUsage);
   return exit_code;
 }
 

@@ -1,0 +1,63 @@
+#pragma once
+// A simulated site that streams over DDS in real time, and remembers the truth for whoever compares.
+#include <atomic>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "proto-tests/replay/streams.hpp"
+#include "proto-tests/sim/simulation.hpp"
+
+namespace liloc::toolbox {
+
+class LiveSite {
+ public:
+  /// Joins the DDS domain as its source of streams. Errors: the options, or DDS.
+  [[nodiscard]] static Result<std::unique_ptr<LiveSite>> create(const sim::SimOptions& options, int domain);
+  ~LiveSite() = default;
+  LiveSite(const LiveSite&) = delete;
+  LiveSite& operator=(const LiveSite&) = delete;
+
+  /// Writes FOLDER/site.json and FOLDER/<device>.json, as server and clients read them.
+  [[nodiscard]] Status describe(const std::filesystem::path& folder) const;
+
+  /// Streams from now on, on a thread of its own, until the simulation is over or the object goes.
+  void start();
+  /// The simulation's time is over, or sending failed: see `trouble`.
+  [[nodiscard]] bool over() const { return over_; }
+  [[nodiscard]] Status trouble() const;
+
+  [[nodiscard]] const std::vector<DeviceInfo>& devices() const { return devices_; }
+  [[nodiscard]] const Site& site() const { return site_; }
+  [[nodiscard]] bool all_heard() const { return streams_.all_heard(); }
+  /// Where a device was at one of its frames of the last minute. Any thread.
+  [[nodiscard]] std::optional<Pose> truth(std::size_t device, StampNs stamp_ns) const;
+  /// Stamp of a device's first frame; 0 before there is one. Any thread.
+  [[nodiscard]] StampNs first_frame_ns(std::size_t device) const;
+  /// How far the streams have fallen behind real time at worst, over the last second or so. Any thread.
+  [[nodiscard]] double behind_ms() const { return behind_ms_; }
+
+ private:
+  LiveSite(wire::Participant participant, sim::Simulation simulation, replay::Streams streams);
+  void run(const std::stop_token& stop);
+  [[nodiscard]] Status send(const sim::SimEvent& event);
+  void remember(const sim::DeviceFrame& frame);
+
+  wire::Participant participant_;
+  sim::Simulation simulation_;
+  replay::Streams streams_;
+  const Site site_;  ///< copies: the simulation belongs to the thread
+  const std::vector<DeviceInfo> devices_;
+
+  mutable std::mutex mutex_;
+  std::vector<std::map<StampNs, Pose>> truths_;  ///< per device, of the last minute
+  std::vector<StampNs> first_frames_ns_;         ///< per device
+  Status trouble_;
+  std::atomic<bool> over_{false};
+  std::atomic<double> behind_ms_{0};
+  std::jthread worker_;  // last member: stops before the rest goes away
+};
+
+}  // namespace liloc::toolbox

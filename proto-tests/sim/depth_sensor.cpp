@@ -8,8 +8,8 @@
 namespace liloc::sim {
 namespace {
 
-// Measured on the L515-like recordings this simulator is to match: 5 mm at 1.5 m, 8 mm at 3 m, 15 mm at 7 m.
-constexpr float kNoiseFloor_m = 0.003F, kNoisePerMetre = 0.0017F;
+// Fitted to L515-like recordings (with slant): 5 mm at 1.5 m, 8 mm at 3 m, 15 mm at 7 m.
+constexpr float kNoiseFloor_m = 0.0025F, kNoisePerMetre = 0.0012F;
 constexpr float kRandomLoss = 0.012F;  // of all pixels
 constexpr float kGrazing = 0.12F;      // cosine below which returns get rare
 constexpr float kEdge_m = 0.06F;       // a step in depth that splits the beam
@@ -38,6 +38,27 @@ float chance_of_loss(Material material, float cosine, float range_share) {
   return loss;
 }
 
+/// One standard deviation along the ray.
+float spread_m(Material material, float cosine, float range_m) {
+  const float slant = std::min(2.0F, 1 / std::sqrt(std::max(cosine, 0.05F)));
+  const float dim = material == Material::dark ? 1.5F : 1.0F;
+  return dim * slant * (kNoiseFloor_m + kNoisePerMetre * range_m);
+}
+
+/// The depth of a pixel whose beam may also meet what is seen to the right or below: its own, a mix of both (a
+/// flying pixel), or 0 where neither is strong enough.
+float split_beam(const View& view, const Camera& camera, int u, int v, float edge_draw) {
+  const bool right = edge_draw < 0.5F;
+  const float share = 2 * edge_draw - (right ? 0.0F : 1.0F);
+  const auto pixel = static_cast<std::size_t>(v * camera.width + u);
+  const float depth = view.depth_m[pixel];
+  if (right ? u + 1 >= camera.width : v + 1 >= camera.height) return depth;
+  const float other = view.depth_m[right ? pixel + 1 : pixel + static_cast<std::size_t>(camera.width)];
+  if (other <= 0 || std::abs(other - depth) < kEdge_m + 0.03F * depth) return depth;
+  if (share > 1 - kLostShare) return 0;
+  return share < kFlyingShare ? depth + (other - depth) * (share / kFlyingShare) : depth;
+}
+
 }  // namespace
 
 void cover_by_hand(View& view, const Camera& camera, double time_s) {
@@ -55,36 +76,25 @@ void cover_by_hand(View& view, const Camera& camera, double time_s) {
 
 DepthImage sense(const View& view, const DepthSensor& sensor, std::uint64_t key, StampNs stamp_ns) {
   const Camera& camera = sensor.camera;
-  const auto width = static_cast<std::size_t>(camera.width), height = static_cast<std::size_t>(camera.height);
-  DepthImage image{stamp_ns, camera.width, camera.height, std::vector<std::uint16_t>(width * height, 0)};
+  DepthImage image{stamp_ns, camera.width, camera.height, std::vector<std::uint16_t>(view.depth_m.size(), 0)};
   const auto unit = static_cast<float>(1.0 / camera.depth_scale_m), noise = static_cast<float>(sensor.noise);
   const auto nearest = static_cast<float>(sensor.nearest_m), range_limit = static_cast<float>(sensor.range_m);
   const std::uint64_t frame = mix(key);
-  for (std::size_t v = 0; v < height; ++v) {
-    const auto y = static_cast<float>((static_cast<double>(v) - camera.cy) / camera.fy);
-    for (std::size_t u = 0; u < width; ++u) {
-      const std::size_t pixel = v * width + u;
+  std::size_t pixel = 0;
+  for (int v = 0; v < camera.height; ++v) {
+    const auto y = static_cast<float>((v - camera.cy) / camera.fy);
+    for (int u = 0; u < camera.width; ++u, ++pixel) {
       float depth = view.depth_m[pixel];
-      if (depth <= 0) continue;
-      const auto x = static_cast<float>((static_cast<double>(u) - camera.cx) / camera.fx);
+      const auto x = static_cast<float>((u - camera.cx) / camera.fx);
       const float ray = std::sqrt(x * x + y * y + 1), range = depth * ray;
       if (range < nearest || range > range_limit) continue;
       if (noise > 0) {
         const Draw draw(frame + pixel);
         const float cosine = view.cos_incidence[pixel];
         if (draw.loss < noise * chance_of_loss(view.material[pixel], cosine, range / range_limit)) continue;
-        const std::size_t beside =
-            draw.edge < 0.5F ? (u + 1 < width ? pixel + 1 : pixel) : (v + 1 < height ? pixel + width : pixel);
-        if (const float other = view.depth_m[beside];
-            other > 0 && std::abs(other - depth) > kEdge_m + 0.03F * depth) {
-          const float share = draw.edge < 0.5F ? 2 * draw.edge : 2 * draw.edge - 1;
-          if (share > 1 - kLostShare) continue;
-          if (share < kFlyingShare)
-            depth += (other - depth) * (share / kFlyingShare);  // both sides return, mixed
-        }
-        const float slant = std::min(2.0F, 1 / std::sqrt(std::max(cosine, 0.05F)));
-        const float dim = view.material[pixel] == Material::dark ? 1.5F : 1.0F;
-        depth += noise * draw.normal * dim * slant * (kNoiseFloor_m + kNoisePerMetre * range) / ray;
+        depth = split_beam(view, camera, u, v, draw.edge);
+        if (depth <= 0) continue;
+        depth += noise * draw.normal * spread_m(view.material[pixel], cosine, range) / ray;
       }
       image.units[pixel] = static_cast<std::uint16_t>(std::clamp(depth * unit + 0.5F, 0.0F, 65535.0F));
     }

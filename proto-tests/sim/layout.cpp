@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 constexpr double kHalfTurn = std::numbers::pi;
 constexpr int kTries = 60;
-constexpr double kCornerKeptFree = 0.15;
+constexpr double kCornerKeptFree = 0.15, kKeptFromLidars = 2.5;  // metres
 
 /// Fills a room piece by piece; a piece that finds no place is left out.
 class Furnisher {
@@ -38,7 +38,16 @@ class Furnisher {
     place(piece, gap_m, [&] {
       const double yaw = square ? 0.5 * kHalfTurn * random_.below(4) + 0.05 * random_.normal()
                                 : random_.uniform(-kHalfTurn, kHalfTurn);
-      return Placement{{random_.uniform(0.5, size_.x() - 0.5), random_.uniform(0.5, size_.y() - 0.5)}, yaw};
+      return Placement{somewhere(0.5), yaw};
+    });
+  }
+
+  /// Where nobody who hangs up a LiDAR would curse it: away from corners and wall middles.
+  void pillar(const Furniture& piece) {
+    place(piece, 0.8, [&] {
+      Vector2d at = somewhere(1.0);
+      for (int i = 0; i < kTries && near_a_lidar(at); ++i) at = somewhere(1.0);
+      return Placement{at, 0.02 * random_.normal()};
     });
   }
 
@@ -74,6 +83,19 @@ class Furnisher {
     return {{size_.x() - p.at.x(), size_.y() - p.at.y()}, p.yaw_rad + kHalfTurn};
   }
 
+  [[nodiscard]] Vector2d somewhere(double from_wall_m) {
+    return {random_.uniform(from_wall_m, size_.x() - from_wall_m),
+            random_.uniform(from_wall_m, size_.y() - from_wall_m)};
+  }
+
+  [[nodiscard]] bool near_a_lidar(const Vector2d& at) const {
+    for (const double x : {0.0, 0.5, 1.0})
+      for (const double y : {0.0, 0.5, 1.0})
+        if ((x != 0.5 || y != 0.5) && (Vector2d(x * size_.x(), y * size_.y()) - at).norm() < kKeptFromLidars)
+          return true;
+    return false;
+  }
+
   template <class Draw>
   void place(const Furniture& piece, double gap_m, Draw draw) {
     for (int i = 0; i < kTries; ++i) {
@@ -104,10 +126,10 @@ void furnish(Random& random, const SimOptions& options, Layout& layout) {
     for (int i = 0; i < static_cast<int>(count + random.unit()); ++i) put();
   };
   if (options.kind == SiteKind::area) {
-    times(area / 40, [&] { furnisher.anywhere(make_pillar(random, layout.size_m.z()), 1.2, true); });
+    times(area / 40, [&] { furnisher.pillar(make_pillar(random, layout.size_m.z())); });
     times(area / 35, [&] { furnisher.anywhere(make_partition(random), 0.9, true); });
   } else if (!corridor) {
-    times(0.7, [&] { furnisher.anywhere(make_pillar(random, layout.size_m.z()), 0.8, true); });
+    times(0.7, [&] { furnisher.pillar(make_pillar(random, layout.size_m.z())); });
   }
   times(around / (corridor ? 14 : 8), [&] { furnisher.along_wall(make_shelf(random), 0.1); });
   times(around / 12, [&] { furnisher.along_wall(make_cabinet(random), 0.1); });

@@ -64,14 +64,15 @@ Result<Cloud> scan_reference(const Layout& layout, int threads) {
   caster->commit();
   Cloud scan_map;
   for (const Vector3d& at : stations(layout.size_m)) {
+    Cloud seen_map;
     for (int side = 0; side < 6; ++side) {
       const Pose T_map_face = cube_face(at, side);
-      append_view(scan_map, caster->look(face, T_map_face, 100), face, T_map_face);
+      append_view(seen_map, caster->look(face, T_map_face, 100), face, T_map_face);
     }
-    scan_map =
-        voxel_downsample(scan_map, kVoxel_m);  // station by station, so that a hall stays small in memory
+    append(scan_map,
+           voxel_downsample(seen_map, kVoxel_m));  // thinned at once, so that a hall stays small in memory
   }
-  return scan_map;
+  return voxel_downsample(scan_map, kVoxel_m);
 }
 
 }  // namespace liloc::sim

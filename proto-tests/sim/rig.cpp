@@ -48,11 +48,11 @@ Mount room_mount(int i, int count, const Vector3d& size) {
   return {at.x(), at.y(), std::atan2(0.5 * d - at.y(), 0.5 * w - at.x())};
 }
 
-/// Evenly along the corridor, by turns looking up and down it.
+/// Evenly along the corridor's middle, by turns looking up and down it.
 Mount corridor_mount(int i, int count, const Vector3d& size) {
   const double share = count == 1 ? 0 : static_cast<double>(i) / (count - 1);
   const bool back = i % 2 == 1;
-  return {kFromWall_m + share * (size.x() - 2 * kFromWall_m), back ? size.y() - kFromWall_m : kFromWall_m,
+  return {kFromWall_m + share * (size.x() - 2 * kFromWall_m), 0.5 * size.y(),
           share > 0.99 || (back && share > 0.01) ? radians(180) : 0.0};
 }
 

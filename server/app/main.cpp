@@ -1,0 +1,86 @@
+// liloc-server: exit code 0 after an ordered stop, 1 when the network fails it, 2 for bad usage or a bad site.
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <exception>
+
+#include "common/recording/recording.hpp"
+#include "server/app/server.hpp"
+
+namespace liloc {
+namespace {
+
+void open_log(log::Level level) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("liloc-server"));
+  spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+  const auto as_spdlog = [](log::Level l) {
+    switch (l) {
+      case log::Level::debug:
+        return spdlog::level::debug;
+      case log::Level::info:
+        return spdlog::level::info;
+      case log::Level::warning:
+        return spdlog::level::warn;
+      case log::Level::error:
+        return spdlog::level::err;
+    }
+    return spdlog::level::info;
+  };
+  spdlog::set_level(as_spdlog(level));
+  spdlog::flush_on(spdlog::level::debug);
+  log::set_sink([as_spdlog](log::Level l, std::string_view line) { spdlog::log(as_spdlog(l), "{}", line); });
+}
+
+/// Blocked in every thread, and taken by sigwait in the first: a handler could do next to nothing.
+sigset_t block_stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+int run(int argc, char** argv) {
+  const sigset_t signals = block_stop_signals();  // before any thread is made
+  int exit_code = 0;
+  const auto options = parse_arguments(argc, argv, exit_code);
+  if (!options) {
+    if (!options.error().message.empty()) fmt::print(stderr, "liloc-server: {}\n", options.error().message);
+    return exit_code;
+  }
+  open_log(options->log_level);
+  const auto site = read_site(options->site_file);
+  if (!site) {
+    log::error("{}", site.error().message);
+    return 2;
+  }
+  const auto server = Server::start(*options, *site);
+  if (!server) {
+    log::error("{}", server.error().message);
+    return 1;
+  }
+  log::info("{} serves {} with {} LiDARs on domain {}, interface {}", options->service.server_id,
+            options->site_file, site->global_lidars.size(), options->seat.domain, options->seat.interface);
+  int received = 0;
+  sigwait(&signals, &received);
+  log::info("signal {}: stopping", received);
+  (*server)->stop();
+  const auto last = (*server)->status();
+  log::info("stopped after {:.0f} s: {} answered, {} verified, {} refused", last.uptime_s, last.answered,
+            last.verified, last.refused);
+  return 0;
+}
+
+}  // namespace
+}  // namespace liloc
+
+int main(int argc, char** argv) {
+  try {
+    return liloc::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "liloc-server: {}\n", error.what());
+    return 1;
+  }
+}

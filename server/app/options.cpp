@@ -1,0 +1,88 @@
+#include "server/app/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+namespace liloc {
+namespace {
+
+struct Raw {
+  std::string method = "liloc";
+  int hold_ms = 100;
+};
+
+void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
+  app.set_version_flag("--version", LILOC_VERSION);
+  app.set_config("--config", "", "Read options from this file (TOML: name = value)");
+  app.add_option("--site", options.site_file, "Site description: the ceiling LiDARs and where they hang")
+      ->required();
+
+  auto* network = app.add_option_group("network");
+  network->add_option("--domain", options.seat.domain, "DDS domain, 0..230")->capture_default_str();
+  network->add_option("--interface", options.seat.interface, "Network interface: name, address or auto")
+      ->capture_default_str();
+  network->add_option("--server-id", options.service.server_id, "Name in replies and status")
+      ->capture_default_str();
+
+  auto* method = app.add_option_group("localization");
+  method->add_option("--voxel", options.localizer.voxel_size_m, "Voxel size of the global cloud, m")
+      ->check(CLI::Range(0.01, 0.5))
+      ->capture_default_str();
+  method->add_option("--method", raw.method, "liloc, dynamic-noopt, dynamic-nover or static-noopt")
+      ->capture_default_str();
+  method->add_option("--sampling", options.localizer.sampling, "Share of points with features that RANSAC uses")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  method->add_option("--seed", options.localizer.seed, "Seed of all randomness")->capture_default_str();
+
+  auto* load = app.add_option_group("load");
+  load->add_option("--workers", options.service.workers, "Requests worked on at once")->capture_default_str();
+  load->add_option("--threads", options.localizer.threads, "Threads of each request")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  load->add_option("--queue", options.service.queue, "Requests that may wait")->capture_default_str();
+  load->add_option("--max-rate", options.service.max_rate_hz, "Requests a second of one client")
+      ->capture_default_str();
+  load->add_option("--max-clients", options.service.max_clients, "Clients served")->capture_default_str();
+  load->add_option("--hold-ms", raw.hold_ms, "Longest wait for the ceiling's next frame, ms")
+      ->capture_default_str();
+
+  const std::map<std::string, log::Level> levels = {{"debug", log::Level::debug},
+                                                    {"info", log::Level::info},
+                                                    {"warning", log::Level::warning},
+                                                    {"error", log::Level::error}};
+  app.add_option("--log-level", options.log_level, "debug, info, warning or error")
+      ->transform(CLI::CheckedTransformer(levels, CLI::ignore_case))
+      ->default_str("info");
+  app.add_option("--status-every", options.status_every_s, "Seconds between status lines; 0: none")
+      ->check(CLI::Range(0.0, 86'400.0))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
+  ServerOptions options;
+  options.seat.role = wire::Role::server;
+  Raw raw;
+  CLI::App app("Tells devices where they are, from the clouds of the LiDARs on the ceiling.", "liloc-server");
+  declare(app, options, raw);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_code = app.exit(error) == 0 ? 0 : 2;
+    return fail("");  // CLI11 has said it
+  }
+  exit_code = 2;
+  const auto method = method_from(raw.method);
+  if (!method) return tl::unexpected(method.error());
+  options.localizer.method = *method;
+  options.service.hold = std::chrono::milliseconds(raw.hold_ms);
+  options.localizer.server_id = options.service.server_id;
+  if (const auto valid = options.service.validated(); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = wire::profile_xml(options.seat); !valid) return tl::unexpected(valid.error());
+  exit_code = 0;
+  return options;
+}
+
+}  // namespace liloc

@@ -1,0 +1,24 @@
+#pragma once
+// What `liloc-server` is told on its command line or in a file.
+#include <string>
+
+#include "common/base/log.hpp"
+#include "common/wire/participant.hpp"
+#include "server/localization/localizer.hpp"
+#include "server/service/service_options.hpp"
+
+namespace liloc {
+
+struct ServerOptions {
+  std::string site_file;
+  wire::DomainOptions seat;
+  LocalizerOptions localizer;
+  ServiceOptions service;
+  log::Level log_level = log::Level::info;
+  double status_every_s = 10;  ///< a line in the log; 0: none
+};
+
+/// Fills `options`; or prints help, version or what is wrong, and returns the exit code (0 or 2).
+[[nodiscard]] Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code);
+
+}  // namespace liloc

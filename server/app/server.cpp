@@ -1,0 +1,112 @@
+#include "server/app/server.hpp"
+
+#include "common/base/log.hpp"
+
+namespace liloc {
+namespace {
+
+GlobalCloudOptions cloud_options(const ServerOptions& options) {
+  GlobalCloudOptions cloud;
+  cloud.snapshot.voxel_size_m = options.localizer.voxel_size_m;
+  return cloud;
+}
+
+StampNs wall_clock_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+Server::Server(const ServerOptions& options, Site site)
+    : server_id_(options.service.server_id),
+      global_cloud_(std::move(site), cloud_options(options)),
+      localizer_(global_cloud_, options.localizer) {}
+
+Server::~Server() {
+  stop();
+}
+
+Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site site) {
+  std::unique_ptr<Server> server(new Server(options, std::move(site)));
+  if (auto opened = server->open(options); !opened) return tl::unexpected(opened.error());
+  server->dispatcher_->start();
+  return server;
+}
+
+Status Server::open(const ServerOptions& options) {
+  auto participant = wire::Participant::create(options.seat);
+  if (!participant) return tl::unexpected(participant.error());
+  participant_ = *participant;
+  auto dispatcher = wire::Dispatcher::create(*participant);
+  if (!dispatcher) return tl::unexpected(dispatcher.error());
+  dispatcher_ = std::move(*dispatcher);
+  auto publisher = wire::StatusPublisher::create(*participant);
+  if (!publisher) return tl::unexpected(publisher.error());
+  status_publisher_ = std::make_unique<wire::StatusPublisher>(std::move(*publisher));
+  if (auto opened = open_streams(options); !opened) return opened;
+
+  dispatcher_->every(std::chrono::seconds(1), [this] {
+    if (auto sent = status_publisher_->publish(status()); !sent) log::warning("{}", sent.error().message);
+  });
+  if (options.status_every_s > 0)
+    dispatcher_->every(std::chrono::milliseconds(static_cast<int>(options.status_every_s * 1e3) + 1),
+                       [this] { log_status(); });
+  return {};
+}
+
+Status Server::open_streams(const ServerOptions& options) {
+  FrameSink sink;
+  sink.add_depth = [this](std::size_t lidar, DepthImage image) {
+    return global_cloud_.add_depth(lidar, std::move(image));
+  };
+  sink.add_points = [this](std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor) {
+    return global_cloud_.add_points(lidar, stamp_ns, cloud_sensor);
+  };
+  sink.on_frame = [this] { service_->poke(); };
+  auto ingest = Ingest::create(*dispatcher_, global_cloud_.site(), std::move(sink));
+  if (!ingest) return tl::unexpected(ingest.error());
+  ingest_ = std::move(*ingest);
+
+  ServiceBackend backend;
+  backend.locate = [this](const SpotRequest& request) { return localizer_.locate(request); };
+  backend.forget = [this](const std::string& client_id) { localizer_.forget(client_id); };
+  backend.ready = [this](StampNs stamp_ns) { return ingest_->seen(stamp_ns); };
+  auto service = Service::create(*dispatcher_, options.service, std::move(backend));
+  if (!service) return tl::unexpected(service.error());
+  service_ = std::move(*service);
+  return {};
+}
+
+void Server::stop() {
+  if (service_) service_->stop();
+  if (dispatcher_) dispatcher_->stop();
+}
+
+wire::ServerStatus Server::status() const {
+  const ServiceCounters counters = service_->counters();
+  wire::ServerStatus status;
+  status.server_id = server_id_;
+  status.stamp_ns = wall_clock_ns();
+  status.uptime_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  status.lidars = ingest_->health();
+  status.clients = static_cast<std::uint32_t>(service_->clients());
+  status.queued = counters.queued;
+  status.answered = counters.answered;
+  status.verified = counters.verified;
+  status.refused = counters.refused;
+  return status;
+}
+
+void Server::log_status() const {
+  const auto now = status();
+  std::string lidars;
+  for (const auto& lidar : now.lidars)
+    lidars += fmt::format("{}{} {} {:.1f} Hz", lidars.empty() ? "" : ", ", lidar.id, wire::name_of(lidar.state),
+                          lidar.measured_hz);
+  log::info("{} clients, {} queued, {} answered ({} verified, {} refused); {}", now.clients, now.queued,
+            now.answered, now.verified, now.refused, lidars);
+}
+
+}  // namespace liloc

@@ -1,0 +1,42 @@
+#pragma once
+// The server put together: ceiling streams in, global cloud, localizer, clients' requests answered.
+#include <memory>
+#include <optional>
+
+#include "common/wire/status.hpp"
+#include "server/app/options.hpp"
+#include "server/global_cloud/global_cloud.hpp"
+#include "server/ingest/ingest.hpp"
+#include "server/service/service.hpp"
+
+namespace liloc {
+
+class Server {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Site site);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// Refuses new requests, finishes what waits, then hears no more of DDS. Safe to call twice.
+  void stop();
+  [[nodiscard]] wire::ServerStatus status() const;
+
+ private:
+  Server(const ServerOptions& options, Site site);
+  [[nodiscard]] Status open(const ServerOptions& options);
+  [[nodiscard]] Status open_streams(const ServerOptions& options);
+  void log_status() const;
+
+  const std::string server_id_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  GlobalCloud global_cloud_;
+  Localizer localizer_;
+  std::optional<wire::Participant> participant_;  // all below live on it
+  std::unique_ptr<wire::StatusPublisher> status_publisher_;
+  std::unique_ptr<Ingest> ingest_;
+  std::unique_ptr<Service> service_;
+  std::unique_ptr<wire::Dispatcher> dispatcher_;  // its thread uses all of the above: it goes first
+};
+
+}  // namespace liloc

@@ -1,0 +1,121 @@
+// The program as a user runs it: exit codes, one line per error, what lands where.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/recording/files.hpp"
+#include "proto-tests/replay/tests/small_recording.hpp"
+#include "proto-tests/replay/tests/temp_folder.hpp"
+
+namespace liloc::toolbox {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out;  ///< stdout and stderr
+};
+
+Outcome liloc(const std::string& arguments) {
+  Outcome outcome;
+  FILE* pipe = popen((std::string(LILOC_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.out.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
+  return outcome;
+}
+
+void expect_complaint(const Outcome& outcome, int exit_code, const std::string& part) {
+  EXPECT_EQ(outcome.exit_code, exit_code) << outcome.out;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+  EXPECT_THAT(outcome.out, testing::StartsWith("liloc: "));
+  EXPECT_THAT(outcome.out, HasSubstr(part));
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  replay::TempFolder folder_;
+};
+
+TEST_F(CommandLine, EverySubcommandHasHelp) {
+  for (const char* name : {"", "demo ", "replay ", "sim ", "align "}) {
+    const Outcome outcome = liloc(std::string(name) + "--help");
+    EXPECT_EQ(outcome.exit_code, 0) << name;
+    EXPECT_THAT(outcome.out, HasSubstr("Usage"));
+  }
+}
+
+TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
+  expect_complaint(liloc(""), 2, "subcommand");
+  expect_complaint(liloc("dance"), 2, "dance");
+  expect_complaint(liloc("replay"), 2, "REC");
+  expect_complaint(liloc("sim"), 2, "OUT");
+  expect_complaint(liloc("sim " + path("rec") + " --people many"), 2, "many");
+  expect_complaint(liloc("sim " + path("rec") + " --lidars 99"), 2, "lidars");
+  expect_complaint(liloc("align only-one.ply"), 2, "TARGET");
+  EXPECT_FALSE(fs::exists(path("rec")));
+}
+
+TEST_F(CommandLine, ARecordingThatCannotBeReadIsExitCodeTwoAndLeavesNothing) {
+  const std::string out = path("out");
+  expect_complaint(liloc("replay " + path("nowhere") + " --lockstep --out " + out), 2, "nowhere");
+  replay::write_small_recording(folder_.path() / "rec");
+  ASSERT_TRUE(write_file(folder_.path() / "rec/site.json", "[1, 2"));
+  expect_complaint(liloc("replay " + path("rec") + " --lockstep --out " + out), 2, "site.json");
+  expect_complaint(liloc("replay " + path("rec") + " --out " + out), 2, "site.json");
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST_F(CommandLine, SimulatesAndReplays) {
+  const std::string rec = path("rec"), out = path("out");
+  ASSERT_EQ(
+      liloc("sim " + rec + " --seed 5 --seconds 1 --image-width 80 --image-height 60 --people 0").exit_code, 0);
+  const Outcome replayed = liloc("replay " + rec + " --lockstep --out " + out);
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
+  EXPECT_THAT(replayed.out, HasSubstr("device0"));
+  std::ifstream report(out + "/report.json");
+  const auto json = nlohmann::json::parse(report);
+  EXPECT_TRUE(json["devices"]["device0"].contains("online"));
+  EXPECT_TRUE(fs::exists(out + "/device0/spots.csv"));
+  expect_complaint(liloc("sim " + rec), 1, "site.json");  // it does not write over a recording
+}
+
+TEST_F(CommandLine, CloudsThatCannotBeReadAreRefused) {
+  expect_complaint(liloc("align " + path("a.ply") + " " + path("b.ply")), 2, "a.ply");
+  ASSERT_TRUE(write_file(folder_.path() / "a.txt", "x"));
+  expect_complaint(liloc("align " + path("a.txt") + " " + path("a.txt")), 2, "a.txt");
+  const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex ";
+  const std::string tail = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  ASSERT_TRUE(write_file(folder_.path() / "huge.ply", head + "4000000000" + tail + "abc"));
+  expect_complaint(liloc("align " + path("huge.ply") + " " + path("huge.ply")), 2, "huge.ply");
+  ASSERT_TRUE(write_file(folder_.path() / "short.ply", head + "50" + tail + "abc"));
+  expect_complaint(liloc("align " + path("short.ply") + " " + path("short.ply")), 2, "short.ply");
+  ASSERT_TRUE(write_file(folder_.path() / "garbage.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nDATA ascii\n1 2\n"));
+  expect_complaint(liloc("align " + path("garbage.pcd") + " " + path("garbage.pcd")), 2, "garbage.pcd");
+}
+
+TEST_F(CommandLine, AlignsAPublishedPair) {
+  const fs::path pairs = "../shared/pairs/kitchen";
+  if (!fs::exists(pairs / "gt.log")) GTEST_SKIP() << pairs << " is not there";
+  const Outcome outcome = liloc("align --json " + (pairs / "cloud_bin_1.ply").string() + " " +
+                                (pairs / "cloud_bin_0.ply").string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_TRUE(json["trusted"]);
+  // The first entry of gt.log: fragment 1 into fragment 0.
+  const std::array<double, 3> truth{-0.115577, -0.0387705, 0.114875};
+  for (std::size_t row = 0; row < 3; ++row) EXPECT_NEAR(json["T_target_source"][row][3], truth[row], 0.1);
+}
+
+}  // namespace
+}  // namespace liloc::toolbox

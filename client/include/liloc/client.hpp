@@ -1,0 +1,160 @@
+#pragma once
+// LiLoc for a robot: push depth frames and, where there is an IMU, its samples; read the pose.
+//
+//   liloc::client::Options options;
+//   options.id = "robot1";
+//   options.camera = {640, 480, 460.0, 460.0, 319.5, 239.5, 0.00025};
+//   auto made = liloc::client::Client::create(options);
+//   if (!made) { puts(made.error().c_str()); return 1; }
+//   liloc::client::Client& client = *made.value();
+//   client.push_depth(units, 640, 480, stamp_ns);   // from the driver's callback: returns at once
+//   if (auto pose = client.newest(); pose.T_map_sensor) drive(*pose.T_map_sensor);
+//
+// Metres and radians; stamps are nanoseconds of the device's clock. Optical frame: x right, y down, z forward.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace liloc::client {
+
+/// A value or, where there is none, one line that says what is wrong and how to mend it.
+template <class T>
+class [[nodiscard]] Outcome {
+ public:
+  Outcome(T value) : value_(std::move(value)) {}  // NOLINT(google-explicit-constructor): reads like the value
+  [[nodiscard]] static Outcome failed(std::string error) {
+    Outcome outcome;
+    outcome.error_ = std::move(error);
+    return outcome;
+  }
+  explicit operator bool() const { return value_.has_value(); }
+  [[nodiscard]] T& value() { return *value_; }                       ///< only where there is one
+  [[nodiscard]] const std::string& error() const { return error_; }  ///< empty where there is a value
+
+ private:
+  Outcome() = default;
+  std::optional<T> value_;
+  std::string error_;
+};
+
+/// Taken, or an error.
+struct Taken {};
+
+struct Camera {
+  int width = 0, height = 0;
+  double fx = 0, fy = 0, cx = 0, cy = 0;
+  double depth_scale_m = 0.001;  ///< metres per unit of a depth image
+};
+
+/// p_to = T_to_from * p_from.
+struct Pose {
+  std::array<double, 3> translation_m{0, 0, 0};
+  std::array<double, 4> rotation_xyzw{0, 0, 0, 1};
+};
+
+enum class Local { cloud, inertial, dead_reckoning };
+
+/// Every default works in an office. New fields go last.
+struct Options {
+  std::string id;  ///< 1..63 of [A-Za-z0-9_-]; one run at a time per id
+  Camera camera;
+  int domain = 0;                        ///< DDS domain, 0..230
+  std::string network_interface = "lo";  ///< name, address or "auto"; "lo" reaches a server on this host
+  std::vector<std::string> peers;        ///< hosts of the server; empty: this host
+  double min_range_m = 0.25, max_range_m = 8.5;
+  double voxel_size_m = 0.05;   ///< 0.01..0.5
+  int interval_ms = 800;        ///< upper bound between global registrations, 50..60000
+  int reply_timeout_ms = 4000;  ///< a request without an answer for so long counts as unanswered
+  Local local = Local::cloud;
+  std::optional<Pose> T_imu_sensor;  ///< there is an IMU exactly where this is set
+  double still_seconds = 0;          ///< the device stands still for so long at the start (IMU calibration)
+  bool cold = false;                 ///< each request is answered on its own: no prior, no history
+  std::uint64_t seed = 1;
+  std::size_t queue_frames = 4;  ///< depth frames that may wait; the oldest is dropped for the newest
+  std::string trace_folder;      ///< online.tum, trajectory.tum, spots.csv, local.csv; empty: none
+};
+
+/// searching: never located. tracking: located, the server answers. coasting: located once, and carried on by
+/// the device alone because the server is silent or cannot answer.
+enum class State { searching, tracking, coasting };
+
+struct PoseUpdate {
+  std::int64_t stamp_ns = 0;         ///< of the frame; 0 before the first
+  std::optional<Pose> T_map_sensor;  ///< once an answer was verified
+  Pose T_odom_sensor;                ///< smooth; never jumps by a correction (REP-105)
+  std::uint32_t odom_segment = 0;    ///< rises when the odometry broke
+  bool informative = false;          ///< the frame showed enough to be matched
+  bool converged = false;            ///< its pose was measured, not guessed
+  State state = State::searching;
+  bool server_connected = false;
+};
+
+struct Reply {
+  std::int64_t stamp_ns = 0;  ///< of the frame that was asked about
+  bool verified = false;
+  std::string status, reason, text;     ///< as in spots.csv; `text` is for people
+  std::optional<Pose> T_map_sensor;     ///< the server's own best answer for that frame
+  std::array<double, 36> covariance{};  ///< of T_map_sensor, row-major, sensor frame, [rad; m]
+  double latency_ms = 0;                ///< on the server
+};
+
+struct Stats {
+  std::uint64_t frames = 0;          ///< processed
+  std::uint64_t frames_dropped = 0;  ///< the queue was full
+  std::uint64_t frames_refused = 0;  ///< wrong size, or a stamp that was not newer
+  std::uint64_t frames_uninformative = 0;
+  std::uint64_t imu_refused = 0;
+  std::uint64_t requests = 0, requests_unsent = 0, requests_unanswered = 0;
+  std::uint64_t replies = 0, replies_verified = 0, replies_refused = 0;
+  double frame_ms_median = 0, frame_ms_p99 = 0;  ///< over the last 512 frames
+};
+
+/// Called for every processed frame on the registration thread: a slow callback delays the next frame.
+using PoseCallback = std::function<void(const PoseUpdate&)>;
+/// Called for every reply on the network thread.
+using ReplyCallback = std::function<void(const Reply&)>;
+/// Called for every line of the log; any thread. Level 0 debug, 1 info, 2 warning, 3 error. Process-wide.
+using LogCallback = std::function<void(int level, const std::string& line)>;
+void set_log(LogCallback callback);
+
+/// Owns its threads (registration, sending, network). All calls are safe from any thread and none waits for the
+/// network; callbacks must not call `stop` or destroy the client.
+class Client {
+ public:
+  /// Callbacks may be empty; they may run before `create` returns. Errors name the option, or carry the
+  /// transport's own text. A server that is not there is no error: the client waits for it.
+  static Outcome<std::unique_ptr<Client>> create(const Options& options, PoseCallback on_pose = {},
+                                                 ReplyCallback on_reply = {});
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// Row-major 16-bit z-depth of the camera's size, 0 = no return; copied. Errors: the size differs from the
+  /// camera's, the client was stopped.
+  Outcome<Taken> push_depth(const std::uint16_t* units, int width, int height, std::int64_t stamp_ns);
+  /// IMU axes; `specific_force`: a device at rest reads +g upwards. Errors: no T_imu_sensor, not finite,
+  /// stopped.
+  Outcome<Taken> push_imu(std::int64_t stamp_ns, const std::array<double, 3>& angular_velocity_rad_s,
+                          const std::array<double, 3>& specific_force_m_s2);
+
+  /// Of the newest processed frame.
+  [[nodiscard]] PoseUpdate newest() const;
+  [[nodiscard]] Stats stats() const;
+
+  /// Takes no more frames, finishes those that wait, sends what is due, writes the trace. Idempotent. The error
+  /// is the trace's.
+  Outcome<Taken> stop();
+
+ private:
+  struct Impl;
+  explicit Client(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace liloc::client

@@ -1,0 +1,251 @@
+#include "client/src/session.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "client/src/trace.hpp"
+#include "common/base/bounded_queue.hpp"
+#include "common/base/log.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr std::size_t kMostImuSamples = 4000;  // 20 s at 200 Hz, while no frame comes
+constexpr std::size_t kLatencies = 512;
+constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits
+
+const char* name_of(Tracking tracking) {
+  switch (tracking) {
+    case Tracking::searching:
+      return "searching";
+    case Tracking::tracking:
+      return "tracking";
+    case Tracking::coasting:
+      return "coasting: located by the device alone";
+  }
+  return "unknown";
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+struct Session::Impl {
+  Impl(SessionOptions o, SessionCallbacks c)
+      : options(std::move(o)),
+        callbacks(std::move(c)),
+        engine(options.engine),
+        frames(options.queue_frames),
+        outbox(kOutbox) {}
+
+  void start();
+  void process(const DepthImage& image);
+  Tracking note(const FrameResult& frame);
+  void hand_over_imu();
+  void send(const SpotRequest& request);
+  void trace_request(const SpotRequest& request);
+
+  const SessionOptions options;
+  const SessionCallbacks callbacks;
+
+  mutable std::mutex engine_mutex;  ///< engine, trace and asked; held for one frame or one reply
+  Engine engine;
+  std::optional<TraceWriter> trace;
+  Status trace_status;
+  std::map<std::uint64_t, SpotRequest> asked;  ///< without their clouds
+
+  mutable std::mutex state_mutex;  ///< all below; held for moments
+  std::deque<ImuSample> imu;
+  std::optional<FrameResult> newest;
+  Tracking tracking = Tracking::searching;
+  SessionStats stats;
+  std::deque<double> latencies_ms;
+  bool stopped = false;
+
+  BoundedQueue<DepthImage> frames;
+  BoundedQueue<SpotRequest> outbox;
+  std::jthread registration, sending;  ///< last: they end before what they use
+};
+
+void Session::Impl::start() {
+  sending = std::jthread([this](const std::stop_token& stop) {
+    while (auto request = outbox.pop(stop)) send(*request);
+  });
+  registration = std::jthread([this](const std::stop_token& stop) {
+    while (auto image = frames.pop(stop)) process(*image);
+  });
+}
+
+void Session::Impl::hand_over_imu() {
+  std::deque<ImuSample> samples;
+  {
+    const std::scoped_lock lock(state_mutex);
+    samples.swap(imu);
+  }
+  std::uint64_t refused = 0;
+  for (const ImuSample& sample : samples)
+    if (const Status ok = engine.add_imu(sample); !ok && ++refused == 1) log::warning("{}", ok.error().message);
+  const std::scoped_lock lock(state_mutex);
+  stats.imu_refused += refused;
+}
+
+void Session::Impl::trace_request(const SpotRequest& request) {
+  if (trace) trace->on_request(request);
+  SpotRequest light = request;
+  light.lpc.bytes.clear();
+  light.local_poses.clear();
+  asked[request.seq] = std::move(light);
+}
+
+Tracking Session::Impl::note(const FrameResult& frame) {
+  const Tracking now = engine.tracking();
+  const std::scoped_lock lock(state_mutex);
+  ++stats.frames;
+  stats.frames_uninformative += frame.informative ? 0 : 1;
+  latencies_ms.push_back(frame.latency_ms);
+  if (latencies_ms.size() > kLatencies) latencies_ms.pop_front();
+  newest = frame;
+  if (now == tracking) return now;
+  log::write(now == Tracking::coasting ? log::Level::warning : log::Level::info,
+             fmt::format("{}: {}", options.engine.client_id, name_of(now)));
+  tracking = now;
+  return now;
+}
+
+void Session::Impl::process(const DepthImage& image) {
+  std::optional<SpotRequest> request;
+  Result<FrameResult> frame = fail("not processed");
+  Tracking now = Tracking::searching;
+  {
+    const std::scoped_lock lock(engine_mutex);
+    hand_over_imu();
+    frame = engine.add_depth(image);
+    if (frame) {
+      now = note(*frame);
+      request = engine.take_request();
+      if (request) trace_request(*request);
+      const auto unanswered = engine.take_unanswered();
+      for (const std::uint64_t seq : unanswered) {
+        asked.erase(seq);
+        if (trace) trace->on_timeout(seq);
+      }
+      if (trace && trace_status) trace_status = trace->on_frame(*frame);
+      const std::scoped_lock state(state_mutex);
+      stats.requests_unanswered += unanswered.size();
+    }
+  }
+  if (!frame) {
+    log::warning("{}: {}", options.engine.client_id, frame.error().message);
+    const std::scoped_lock lock(state_mutex);
+    ++stats.frames_refused;
+    return;
+  }
+  if (request) {
+    const bool displaced = outbox.push(std::move(*request)).has_value();
+    const std::scoped_lock lock(state_mutex);
+    ++stats.requests;
+    stats.requests_unsent += displaced ? 1 : 0;
+  }
+  if (callbacks.on_frame) callbacks.on_frame(*frame, now);
+}
+
+void Session::Impl::send(const SpotRequest& request) {
+  const Status sent = callbacks.send ? callbacks.send(request) : Status(fail("no transport"));
+  if (sent) return;
+  log::debug("{}: request {} not sent: {}", options.engine.client_id, request.seq, sent.error().message);
+  const std::scoped_lock lock(state_mutex);
+  ++stats.requests_unsent;
+}
+
+Session::Session(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Session::~Session() {
+  if (const Status ok = stop(); !ok) log::error("{}", ok.error().message);
+}
+
+Result<std::unique_ptr<Session>> Session::create(SessionOptions options, SessionCallbacks callbacks) {
+  auto impl = std::make_unique<Impl>(std::move(options), std::move(callbacks));
+  if (!impl->options.trace_folder.empty()) {
+    impl->trace.emplace();
+    if (const Status ok = impl->trace->open(impl->options.trace_folder); !ok) return tl::unexpected(ok.error());
+  }
+  impl->start();
+  return std::unique_ptr<Session>(new Session(std::move(impl)));
+}
+
+Status Session::push_depth(DepthImage image) {
+  {
+    const std::scoped_lock lock(impl_->state_mutex);
+    if (impl_->stopped) return fail("{}: stopped: no more frames are taken", impl_->options.engine.client_id);
+  }
+  if (!impl_->frames.push(std::move(image))) return {};
+  const std::scoped_lock lock(impl_->state_mutex);
+  ++impl_->stats.frames_dropped;
+  return {};
+}
+
+Status Session::push_imu(const ImuSample& sample) {
+  const std::scoped_lock lock(impl_->state_mutex);
+  if (!impl_->options.engine.T_imu_sensor)
+    return fail("{}: IMU sample without T_imu_sensor: set it in the options", impl_->options.engine.client_id);
+  if (impl_->stopped) return fail("{}: stopped: no more samples are taken", impl_->options.engine.client_id);
+  if (impl_->imu.size() >= kMostImuSamples) impl_->imu.pop_front();
+  impl_->imu.push_back(sample);
+  return {};
+}
+
+void Session::add_reply(const SpotReply& reply) {
+  const std::scoped_lock lock(impl_->engine_mutex);
+  impl_->engine.add_reply(reply);
+  const auto asked = impl_->asked.find(reply.seq);
+  if (impl_->trace && asked != impl_->asked.end()) impl_->trace->on_reply(reply, asked->second);
+  if (asked != impl_->asked.end()) impl_->asked.erase(asked);
+  const std::scoped_lock state(impl_->state_mutex);
+  ++impl_->stats.replies;
+  impl_->stats.replies_verified += reply.verified() ? 1 : 0;
+  impl_->stats.replies_refused += reply.status == SpotStatus::refused ? 1 : 0;
+}
+
+std::optional<FrameResult> Session::newest_frame() const {
+  const std::scoped_lock lock(impl_->state_mutex);
+  return impl_->newest;
+}
+
+Tracking Session::tracking() const {
+  const std::scoped_lock lock(impl_->state_mutex);
+  return impl_->tracking;
+}
+
+SessionStats Session::stats() const {
+  const std::scoped_lock lock(impl_->state_mutex);
+  SessionStats stats = impl_->stats;
+  const std::vector<double> latencies(impl_->latencies_ms.begin(), impl_->latencies_ms.end());
+  stats.frame_ms_median = quantile(latencies, 0.5);
+  stats.frame_ms_p99 = quantile(latencies, 0.99);
+  return stats;
+}
+
+Status Session::stop() {
+  {
+    const std::scoped_lock lock(impl_->state_mutex);
+    if (std::exchange(impl_->stopped, true)) return {};
+  }
+  impl_->frames.close();
+  if (impl_->registration.joinable()) impl_->registration.join();
+  impl_->outbox.close();
+  if (impl_->sending.joinable()) impl_->sending.join();
+  const std::scoped_lock lock(impl_->engine_mutex);
+  if (!impl_->trace) return {};
+  const Status closed = impl_->trace->close();
+  return impl_->trace_status ? closed : impl_->trace_status;
+}
+
+}  // namespace liloc

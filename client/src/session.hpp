@@ -1,0 +1,60 @@
+#pragma once
+// The engine on its threads, without a transport: requests leave through a function, replies come in by a call.
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "client/src/engine.hpp"
+
+namespace liloc {
+
+struct SessionOptions {
+  EngineOptions engine;
+  std::size_t queue_frames = 4;
+  std::filesystem::path trace_folder;  ///< empty: no trace
+};
+
+struct SessionCallbacks {
+  /// Sends a request; on the sending thread, may wait. An error counts as unsent.
+  std::function<Status(const SpotRequest&)> send;
+  /// After each frame; on the registration thread.
+  std::function<void(const FrameResult&, Tracking)> on_frame;
+};
+
+struct SessionStats {
+  std::uint64_t frames = 0, frames_dropped = 0, frames_refused = 0, frames_uninformative = 0, imu_refused = 0;
+  std::uint64_t requests = 0, requests_unsent = 0, requests_unanswered = 0;
+  std::uint64_t replies = 0, replies_verified = 0, replies_refused = 0;
+  double frame_ms_median = 0, frame_ms_p99 = 0;
+};
+
+/// All calls are safe from any thread; none waits for the network.
+class Session {
+ public:
+  /// Errors: the trace folder.
+  [[nodiscard]] static Result<std::unique_ptr<Session>> create(SessionOptions options,
+                                                               SessionCallbacks callbacks);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Queues; the oldest frame makes room when the queue is full. Error: stopped.
+  [[nodiscard]] Status push_depth(DepthImage image);
+  /// Handed to the engine before the next frame. Errors: no IMU in the options, stopped.
+  [[nodiscard]] Status push_imu(const ImuSample& sample);
+  /// Waits at most for the frame in work.
+  void add_reply(const SpotReply& reply);
+
+  [[nodiscard]] std::optional<FrameResult> newest_frame() const;
+  [[nodiscard]] Tracking tracking() const;
+  [[nodiscard]] SessionStats stats() const;
+  /// Refuses new frames, finishes the waiting ones, sends what is due, closes the trace. Idempotent.
+  [[nodiscard]] Status stop();
+
+ private:
+  struct Impl;
+  explicit Session(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace liloc

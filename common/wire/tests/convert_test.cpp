@@ -1,0 +1,265 @@
+// Hostile and odd samples: each is refused by the name of its field, or understood.
+#include "common/wire/convert.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <functional>
+#include <limits>
+
+#include "common/wire/convert_sensors.hpp"
+#include "common/wire/convert_spot.hpp"
+#include "common/wire/convert_status.hpp"
+#include "samples.hpp"
+
+namespace liloc::wire {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+template <class Message>
+void expect_refused(const Message& message, std::string_view field) {
+  const auto result = from_wire(message);
+  ASSERT_FALSE(result) << field;
+  EXPECT_NE(result.error().message.find(field), std::string::npos) << result.error().message;
+}
+
+struct RequestCase {
+  const char* field;
+  std::function<void(liloc_msg_SpotRequest&)> spoil;
+};
+
+TEST(ConvertRequest, HostileFieldsAreNamed) {
+  const RequestCase cases[] = {
+      {"client_id", [](auto& m) { copy_text(m.client_id, "../etc"); }},
+      {"client_id", [](auto& m) { std::memset(m.client_id, 'a', sizeof m.client_id); }},
+      {"stamp_ns", [](auto& m) { m.stamp_ns = -1; }},
+      {"T_odom_sensor", [](auto& m) { m.T_odom_sensor.translation_m[1] = kNan; }},
+      {"T_odom_sensor", [](auto& m) { m.T_odom_sensor.rotation_xyzw[0] = 2; }},
+      {"odom_sd_rad", [](auto& m) { m.odom_sd_rad = -1; }},
+      {"odom_sd_m", [](auto& m) { m.odom_sd_m = std::numeric_limits<double>::infinity(); }},
+      {"local_poses", [](auto& m) { m.local_poses._buffer[0].T_odom_sensor.rotation_xyzw[3] = kNan; }},
+      {"local_poses", [](auto& m) { m.local_poses._buffer[0].stamp_ns = m.stamp_ns + 1; }},
+      {"codec", [](auto& m) { m.codec = 3; }},
+      {"lpc", [](auto& m) { m.lpc._length = 0; }},
+      {"voxel_size_m", [](auto& m) { m.voxel_size_m = 0; }},
+      {"camera", [](auto& m) { m.camera.width = 0; }},
+      {"camera", [](auto& m) { m.camera.fx = kNan; }},
+      {"camera", [](auto& m) { m.camera.depth_scale_m = 0; }},
+      {"min_range_m", [](auto& m) { m.min_range_m = kNan; }},
+      {"max_range_m", [](auto& m) { m.max_range_m = 0.1; }},
+      {"up_sensor", [](auto& m) { m.up_sensor[0] = 3; }},
+      {"up_sd_rad", [](auto& m) { m.up_sd_rad = -0.1; }},
+  };
+  const SpotRequest request = sample_request();
+  ASSERT_TRUE(from_wire(to_wire(request, 1)->message));
+  for (const auto& [field, spoil] : cases) {
+    auto sample = to_wire(request, 1).value();
+    spoil(sample.message);
+    expect_refused(sample.message, field);
+  }
+}
+
+TEST(ConvertReply, HostileFieldsAreNamed) {
+  const std::pair<const char*, std::function<void(liloc_msg_SpotReply&)>> cases[] = {
+      {"status", [](auto& m) { m.status = 0; }},
+      {"status", [](auto& m) { m.status = 4; }},
+      {"covariance", [](auto& m) { m.covariance[7] = -1; }},
+      {"covariance", [](auto& m) { m.covariance[35] = kNan; }},
+      {"fitness", [](auto& m) { m.fitness = 1.5; }},
+      {"overlap", [](auto& m) { m.overlap = kNan; }},
+      {"inlier_rmse_m", [](auto& m) { m.inlier_rmse_m = -1; }},
+      {"margin", [](auto& m) { m.margin = kNan; }},
+      {"latency_ms", [](auto& m) { m.latency_ms = -5; }},
+      {"T_map_sensor",
+       [](auto& m) {
+         m.T_map_sensor.rotation_xyzw[3] = 0;
+         m.T_map_sensor.rotation_xyzw[0] = 0;
+       }},
+      {"T_map_odom", [](auto& m) { m.T_map_odom.translation_m[0] = 1e9; }},
+  };
+  for (const auto& [field, spoil] : cases) {
+    auto message = to_wire(sample_reply(), 1);
+    ASSERT_TRUE(from_wire(message));
+    spoil(message);
+    expect_refused(message, field);
+  }
+}
+
+TEST(ConvertReply, AReasonOfANewerServerIsKept) {
+  auto message = to_wire(sample_reply(), 1);
+  message.reason = 200;
+  const auto reply = from_wire(message);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(name_of(reply->reason), "unknown");
+}
+
+TEST(ConvertReply, LongTextIsCutAndTerminated) {
+  SpotReply reply = sample_reply();
+  reply.text.assign(500, 'x');
+  const auto message = to_wire(reply, 1);
+  EXPECT_EQ(message.text[200], '\0');
+  EXPECT_EQ(from_wire(message)->text.size(), 200U);
+}
+
+TEST(ConvertStatus, RoundTripAndHostileState) {
+  ServerStatus status;
+  status.server_id = "edge1";
+  status.lidars = {{"ceiling0", LidarState::slow, 2.5, 7, 3, std::string(300, 'e')}};
+  auto sample = to_wire(status);
+  const auto back = from_wire(sample.message);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->lidars[0].state, LidarState::slow);
+  EXPECT_EQ(back->lidars[0].last_error.size(), 200U);
+  sample.lidars[0].state = 9;
+  expect_refused(sample.message, "state");
+  sample.lidars[0].state = 1;
+  sample.message.protocol_version = 99;
+  expect_refused(sample.message, "version 99");
+}
+
+DepthImage depth_2x2() {
+  return {5'000'000'001, 2, 2, {1, 2, 0x1234, 65535}};
+}
+
+Result<DepthImage> read(const sensor_msgs_msg_dds__Image_& message) {
+  return from_wire(message, 0.001);
+}
+
+TEST(ConvertImage, RoundTripKeepsUnitsAndStamp) {
+  const DepthImage image = depth_2x2();
+  const auto back = read(to_wire(image, "lidar"));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->units, image.units);
+  EXPECT_EQ(back->stamp_ns, image.stamp_ns);
+}
+
+TEST(ConvertImage, BigEndianAndPaddedRowsAreUnderstood) {
+  const std::vector<std::uint8_t> bytes = {0x12, 0x34, 0x00, 0x01, 9, 9, 0xff, 0xff, 0x00, 0x02, 9, 9};
+  auto message = to_wire(depth_2x2(), "lidar");
+  message.is_bigendian = 1;
+  message.step = 6;
+  lend(message.data, bytes);
+  const auto image = read(message);
+  ASSERT_TRUE(image) << image.error().message;
+  EXPECT_EQ(image->units, (std::vector<std::uint16_t>{0x1234, 1, 0xffff, 2}));
+}
+
+TEST(ConvertImage, MetresBecomeUnitsAndNoReturnStaysZero) {
+  const std::vector<float> metres = {1.5F, 0.0F, std::numeric_limits<float>::quiet_NaN(), 100.0F};
+  std::vector<std::uint8_t> bytes(16);
+  std::memcpy(bytes.data(), metres.data(), 16);
+  auto message = to_wire(depth_2x2(), "lidar");
+  copy_text(message.encoding, "32FC1");
+  message.step = 8;
+  lend(message.data, bytes);
+  const auto image = from_wire(message, 0.00025);
+  ASSERT_TRUE(image) << image.error().message;
+  EXPECT_EQ(image->units, (std::vector<std::uint16_t>{6000, 0, 0, 0}));
+}
+
+TEST(ConvertImage, HostileFieldsAreNamed) {
+  const std::pair<const char*, std::function<void(sensor_msgs_msg_dds__Image_&)>> cases[] = {
+      {"encoding", [](auto& m) { copy_text(m.encoding, "rgb8"); }},
+      {"0 x 2", [](auto& m) { m.width = 0; }},
+      {"x 4000000000", [](auto& m) { m.height = 4'000'000'000; }},
+      {"step", [](auto& m) { m.step = 3; }},
+      {"data", [](auto& m) { m.data._length -= 1; }},
+      {"data", [](auto& m) { m.step = 2'000'000'000; }},
+      {"stamp", [](auto& m) { m.header.stamp.nanosec = 4'000'000'000; }},
+      {"stamp", [](auto& m) { m.header.stamp.sec = -5; }},
+  };
+  const DepthImage image = depth_2x2();
+  for (const auto& [field, spoil] : cases) {
+    auto message = to_wire(image, "lidar");
+    spoil(message);
+    const auto result = read(message);
+    ASSERT_FALSE(result) << field;
+    EXPECT_NE(result.error().message.find(field), std::string::npos) << result.error().message;
+  }
+}
+
+TEST(ConvertCameraInfo, RoundTripAndHostileFields) {
+  const Camera camera{320, 240, 228.5, 230.5, 159.5, 119.5, 0.001};
+  const auto message = to_wire(camera, 7, "lidar");
+  const auto back = from_wire(message);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->width, 320);
+  EXPECT_EQ(back->fy, 230.5);
+  EXPECT_EQ(back->cx, 159.5);
+  auto zero = message;
+  zero.k[0] = 0;
+  expect_refused(zero, "camera_info");
+  auto skewed = message;
+  skewed.k[1] = 1;
+  expect_refused(skewed, "k is not");
+  auto wide = message;
+  wide.width = 100'000;
+  expect_refused(wide, "100000 x 240");
+}
+
+TEST(ConvertPoints, FieldsAtAnyOffsetInAnyByteOrder) {
+  std::vector<std::uint8_t> bytes(2 * 20, 0xAA);  // z at 2, x at 6, y at 14, in points of 20 bytes
+  const auto put = [&](std::size_t at, float value, bool big) {
+    auto raw = std::bit_cast<std::array<std::uint8_t, 4>>(value);
+    if (big) std::ranges::reverse(raw);
+    std::ranges::copy(raw, bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  for (const bool big : {false, true}) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      put(20 * i + 6, 1.0F + static_cast<float>(i), big);
+      put(20 * i + 14, 2.0F, big);
+      put(20 * i + 2, 3.0F, big);
+    }
+    auto sample = to_wire(Cloud{{{0, 0, 0}, {0, 0, 0}}, {}}, 9, "lidar");
+    sample.fields[0].offset = 6;
+    sample.fields[1].offset = 14;
+    sample.fields[2].offset = 2;
+    sample.message.is_bigendian = big;
+    sample.message.point_step = 20;
+    sample.message.row_step = 40;
+    lend(sample.message.data, bytes);
+    const auto cloud = from_wire(sample.message);
+    ASSERT_TRUE(cloud) << cloud.error().message;
+    ASSERT_EQ(cloud->cloud_sensor.size(), 2U);
+    EXPECT_EQ(cloud->cloud_sensor.points[1], Eigen::Vector3f(2, 2, 3));
+    EXPECT_EQ(cloud->stamp_ns, 9);
+  }
+}
+
+TEST(ConvertPoints, HostileFieldsAreNamed) {
+  const std::pair<const char*, std::function<void(PointsSample&)>> cases[] = {
+      {"lack z", [](auto& s) { copy_text(s.fields[2].name, "w"); }},
+      {"datatype", [](auto& s) { s.fields[0].datatype = 8; }},
+      {"offset", [](auto& s) { s.fields[1].offset = 0xffffffff; }},
+      {"offset", [](auto& s) { s.message.point_step = 0; }},
+      {"row_step", [](auto& s) { s.message.row_step = 4; }},
+      {"data", [](auto& s) { s.message.data._length = 3; }},
+      {"points", [](auto& s) { s.message.width = s.message.height = 0xffffffff; }},
+  };
+  const Cloud cloud{{{1, 2, 3}, {4, 5, 6}}, {}};
+  for (const auto& [field, spoil] : cases) {
+    auto sample = to_wire(cloud, 9, "lidar");
+    spoil(sample);
+    expect_refused(sample.message, field);
+  }
+}
+
+TEST(ConvertImu, RoundTripAndHostileFields) {
+  const ImuSample sample{1'500'000'000, {0.1, -0.2, 0.3}, {0, 0, 9.8}};
+  const auto message = to_wire(sample, "imu");
+  const auto back = from_wire(message);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->stamp_ns, sample.stamp_ns);
+  EXPECT_EQ(back->angular_velocity_rad_s, sample.angular_velocity_rad_s);
+  EXPECT_EQ(back->specific_force_m_s2, sample.specific_force_m_s2);
+  auto spun = message;
+  spun.angular_velocity.y = kNan;
+  expect_refused(spun, "angular_velocity");
+  auto hit = message;
+  hit.linear_acceleration.z = 1e9;
+  expect_refused(hit, "linear_acceleration");
+}
+
+}  // namespace
+}  // namespace liloc::wire

@@ -1,0 +1,125 @@
+// Real processes over DDS: what `liloc replay` and `liloc demo` start, they finish and end.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "proto-tests/replay/csv.hpp"
+#include "proto-tests/replay/processes.hpp"
+#include "proto-tests/replay/tests/temp_folder.hpp"
+#include "proto-tests/sim/write_recording.hpp"
+
+namespace liloc::toolbox {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+using std::chrono::seconds;
+
+#ifdef LILOC_SANITIZED
+constexpr bool kMeasured = false;  // ten times slower: the processes are exercised, their answers come too late
+#else
+constexpr bool kMeasured = true;
+#endif
+
+/// Processes whose command line holds `text`; our own children carry the test's folder there.
+std::vector<std::string> processes_with(const std::string& text) {
+  std::vector<std::string> found;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    std::ifstream in(entry.path() / "cmdline");
+    std::string line((std::istreambuf_iterator<char>(in)), {});
+    std::replace(line.begin(), line.end(), '\0', ' ');
+    const bool ours =
+        line.find("liloc-server ") != std::string::npos || line.find("liloc-client ") != std::string::npos;
+    if (ours && line.find(text) != std::string::npos) found.push_back(line);
+  }
+  return found;
+}
+
+class Live : public testing::Test {
+ protected:
+  void record(double length_s) {
+    sim::SimOptions site;
+    site.seed = 21;
+    site.seconds = length_s;
+    site.still_seconds = 1;
+    site.people = 1;
+    site.devices = 2;
+    site.device_rate_hz = 8;
+    site.image_width = 160;
+    site.image_height = 120;
+    const auto status = sim::write_recording(site, rec_);
+    ASSERT_TRUE(status) << status.error().message;
+  }
+  Result<replay::Child> start(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), LILOC_PROGRAM);
+    return replay::Child::start(arguments, log_);
+  }
+  static void wait(replay::Child& child, seconds limit) {
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (child.running() && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+
+  replay::TempFolder folder_;
+  fs::path rec_ = folder_.path() / "rec", out_ = folder_.path() / "out", log_ = folder_.path() / "log";
+};
+
+TEST_F(Live, ReplayOverDdsLocatesBothDevices) {
+  record(5);
+  auto replay = start({"replay", rec_, "--out", out_});
+  ASSERT_TRUE(replay);
+  wait(*replay, seconds(60));
+  ASSERT_FALSE(replay->running());
+  const auto status = replay->stop();
+  ASSERT_TRUE(status) << status.error().message;
+  std::ifstream in(out_ / "report.json");
+  const auto report = nlohmann::json::parse(in);
+  EXPECT_EQ(report["mode"], "dds");
+  for (const char* device : {"device0", "device1"}) {
+    const auto local = replay::Csv::read(out_ / device / "local.csv");
+    ASSERT_TRUE(local);
+    EXPECT_GT(local->rows(), 0u);
+    if (!kMeasured) continue;
+    const auto& online = report["devices"][device]["online"];
+    EXPECT_GT(online["coverage"], 0.5) << report.dump(1);
+    EXPECT_LT(online["mean_trans_m"], 0.15) << report.dump(1);
+    EXPECT_EQ(report["devices"][device]["spots"]["verified_wrong"], 0);
+  }
+  EXPECT_THAT(processes_with(folder_.path()), testing::IsEmpty());
+}
+
+TEST_F(Live, AStopSignalEndsAllChildren) {
+  record(5);
+  auto replay = start({"replay", rec_, "--out", out_});
+  ASSERT_TRUE(replay);
+  for (int i = 0; i < 500 && processes_with(folder_.path()).size() < 3; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(processes_with(folder_.path()).size(), 3u);  // one server, two clients
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const auto stopped = replay->stop(seconds(15));
+  ASSERT_FALSE(stopped);
+  EXPECT_THAT(stopped.error().message, HasSubstr("exit code 1"));
+  EXPECT_THAT(stopped.error().message, HasSubstr("stopped by a signal"));
+  EXPECT_THAT(processes_with(folder_.path()), testing::IsEmpty());
+  EXPECT_FALSE(fs::exists(out_ / "report.json"));
+}
+
+TEST_F(Live, TheDemoLocatesItsDevices) {
+  auto demo = start({"demo", "--seconds", "10"});
+  ASSERT_TRUE(demo);
+  wait(*demo, seconds(60));
+  ASSERT_FALSE(demo->running());
+  const auto status = demo->stop();
+  if (kMeasured) {
+    ASSERT_TRUE(status) << status.error().message;
+  }
+  const std::string end = replay::last_lines(log_, 3);
+  EXPECT_THAT(end, HasSubstr("device0"));
+  EXPECT_THAT(end, HasSubstr("device1"));
+}
+
+}  // namespace
+}  // namespace liloc::toolbox

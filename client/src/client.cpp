@@ -136,7 +136,7 @@ void set_log(LogCallback callback) {
   });
 }
 
-/// Members in the order in which they may go: the dispatcher's thread ends before the session it calls.
+/// Members go from the last to the first: the link, the dispatcher with its thread, then the session it calls.
 struct Client::Impl {
   Status connect(const Options& options);
   void take_server(bool matched);

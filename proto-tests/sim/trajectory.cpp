@@ -66,7 +66,7 @@ struct Wander {
 /// What a hand adds while one walks: `share` 0 standing, 1 at full pace.
 void add_gait(std::vector<Vector6>& controls, const std::vector<double>& share, Random& random) {
   const Wander gaze(random, 9), nod(random, 5), tilt(random, 6);
-  const double step_hz = random.uniform(1.6, 2.0), bob_m = random.uniform(0.012, 0.022);
+  const double step_hz = random.uniform(1.6, 2.0), bob_m = random.uniform(0.025, 0.05);  // smoothing halves it
   double stride = 0;
   for (std::size_t i = 0; i < controls.size(); ++i) {
     const double t = static_cast<double>(i) * kWalkStep_s, s = share[i];

@@ -9,8 +9,9 @@ namespace liloc::sim {
 namespace {
 
 using Eigen::Vector2d;
-constexpr double kPersonalSpace = 0.75;  // metres between two bodies' middles
-constexpr double kPatience_s = 1.0;      // then one turns round and goes elsewhere
+constexpr double kPersonalSpace = 0.6;  // metres between two bodies' middles
+constexpr double kPatience_s = 1.0;     // then one turns round and goes elsewhere
+constexpr double kFarEnough_m = 3.0;    // for a goal, where the site has such a place
 
 double wrapped(double angle_rad) {
   return std::remainder(angle_rad, 2 * std::numbers::pi);
@@ -34,7 +35,7 @@ bool in_the_way(const Walker& self, const Vector2d& next, const std::vector<Walk
 void choose_goal(Random& random, const FloorPlan& plan, Walker& walker) {
   for (int i = 0; i < 20 && walker.way.empty(); ++i) {
     const Vector2d goal = plan.random_place(random);
-    if ((goal - walker.state.at).norm() < 1.5) continue;
+    if ((goal - walker.state.at).norm() < kFarEnough_m / (1 + 0.2 * i)) continue;
     const auto way = plan.route(plan.nearest_free(walker.state.at), goal);
     walker.way.assign(way.begin(), way.end());
   }
@@ -50,8 +51,24 @@ double turn(Walker& walker, const Vector2d& aim) {
   return std::abs(off);
 }
 
+/// Goes round whoever stands in the way of `step`, on the right where there is room, else on the left, else
+/// waits.
+void step_aside(const FloorPlan& plan, Walker& walker, const Vector2d& step, const std::vector<Walker>& all) {
+  for (const double by_rad : {-0.7, 0.7, -1.2, 1.2, -1.7, 1.7}) {
+    const Vector2d aside = walker.state.at + Eigen::Rotation2Dd(by_rad) * (0.7 * step);
+    if (!plan.is_free(aside) || in_the_way(walker, aside, all)) continue;
+    const auto way = plan.route(aside, walker.way.back());
+    if (way.empty()) continue;
+    walker.state.at = aside;
+    walker.state.speed_m_s *= 0.7;
+    walker.way.assign(way.begin(), way.end());
+    return;
+  }
+  walker.state.speed_m_s = 0;
+}
+
 /// One step along the way, unless a body stands there.
-void advance(Walker& walker, const std::vector<Walker>& all) {
+void advance(const FloorPlan& plan, Walker& walker, const std::vector<Walker>& all) {
   const double off = turn(walker, walker.way.front());
   const double limit = walker.style.turns_first ? 0.2 : 1.2;
   const double wanted = off > limit ? 0.0 : walker.style.speed_m_s;
@@ -70,8 +87,8 @@ void advance(Walker& walker, const std::vector<Walker>& all) {
     left -= leg.norm();
   }
   if (in_the_way(walker, next, all)) {
-    walker.state.speed_m_s = 0;
     walker.blocked_s += kWalkStep_s;
+    step_aside(plan, walker, next - walker.state.at, all);
     return;
   }
   walker.blocked_s = 0;
@@ -93,7 +110,7 @@ void step(Random& random, const FloorPlan& plan, Walker& walker, const std::vect
   const bool arrived = walker.way.empty();
   if (arrived) choose_goal(random, plan, walker);
   if (arrived && random.chance(walker.style.pause_chance)) walker.rest_s = random.uniform(0.5, 3);
-  if (!walker.way.empty() && walker.rest_s <= 0) advance(walker, all);
+  if (!walker.way.empty() && walker.rest_s <= 0) advance(plan, walker, all);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ WalkStyle device_style(Random& random, const SimOptions& options) {
   style.turn_rad_s = robot ? 0.3 : 1.1;
   style.turns_first = robot;
   style.start_s = options.still_seconds + 0.5;
-  style.pause_chance = 0.2;
+  style.pause_chance = 0.15;
   return style;
 }
 

@@ -1,0 +1,116 @@
+#include "common/registration/scan_match.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "common/geometry/depth.hpp"
+#include "common/testing/box_room.hpp"
+
+namespace liloc {
+namespace {
+
+using scene::corridor;
+using scene::furnished_room;
+using scene::looking;
+using scene::render;
+using scene::small_camera;
+
+std::vector<Surfel> surfels_of(const scene::BoxRoom& room, const Pose& T, StampNs stamp, double noise_m) {
+  return extract_surfels(*depth_to_cloud(render(room, T, small_camera(), stamp, noise_m), small_camera()),
+                         Eigen::Vector3f::Zero());
+}
+
+Pose disturbed(const Pose& T, unsigned seed, double rad, double m) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<double> unit;
+  const Eigen::Vector3d axis = Eigen::Vector3d(unit(rng), unit(rng), unit(rng)).normalized();
+  const Eigen::Vector3d way = Eigen::Vector3d(unit(rng), unit(rng), unit(rng)).normalized();
+  Pose moved = T;
+  moved.linear() = T.linear() * so3_exp(rad * axis);
+  moved.translation() += m * way;
+  return moved;
+}
+
+class ScanMatchLaw : public testing::TestWithParam<unsigned> {};
+
+TEST_P(ScanMatchLaw, FindsTheWayBackFromADisturbedGuess) {
+  const auto room = furnished_room(GetParam());
+  const Pose T_first = looking({2.6, 2.2, 1.2}, 0.7 * GetParam(), 0.2);
+  LocalMap map;
+  map.insert(T_first, surfels_of(room, T_first, 1, 0.004), 1);
+  const Pose T_second = disturbed(T_first, 100 + GetParam(), 0.05, 0.05);
+  const Pose guess = disturbed(T_second, GetParam(), 0.02, 0.04);
+  const auto found = match_scan(map, surfels_of(room, T_second, 2, 0.004), {guess, 0.05, 0.1}, 2);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_LT(distance_m(found->T_map_sensor, T_second), 0.008);
+  EXPECT_LT(angle_between_rad(found->T_map_sensor, T_second), 0.005);
+  EXPECT_GT(found->overlap, 0.8);
+  EXPECT_EQ(found->unobserved, 0);
+}
+
+TEST_P(ScanMatchLaw, MovingMapAndGuessMovesTheAnswerEqually) {
+  const auto room = furnished_room(GetParam());
+  const Pose T = looking({3, 2.5, 1.2}, 0.5 * GetParam(), 0.1);
+  const Pose T_other_map = disturbed(Pose::Identity(), GetParam(), 1.0, 3.0);
+  const auto first = surfels_of(room, T, 1, 0.002),
+             second = surfels_of(room, disturbed(T, 7, 0.02, 0.03), 2, 0.002);
+  LocalMap here, there;
+  here.insert(T, first, 1);
+  there.insert(T_other_map * T, first, 1);
+  const auto a = match_scan(here, second, {T, 0.1, 0.2}, 2);
+  const auto b = match_scan(there, second, {T_other_map * T, 0.1, 0.2}, 2);
+  ASSERT_TRUE(a && b);
+  EXPECT_LT(distance_m(T_other_map * a->T_map_sensor, b->T_map_sensor), 0.006);  // the cells lie differently
+  EXPECT_LT(angle_between_rad(T_other_map * a->T_map_sensor, b->T_map_sensor), 0.004);
+}
+
+TEST_P(ScanMatchLaw, APersonInViewDoesNotMoveTheAnswer) {
+  auto room = furnished_room(GetParam());
+  const Pose T = looking({1.5, 2.5, 1.2}, 0, 0.1);
+  LocalMap map;
+  room.furniture.push_back({{3.0, 2.2, 0}, {3.4, 2.6, 1.8}});
+  for (int i = 0; i < 4; ++i) map.insert(T, surfels_of(room, T, from_ms(300.0 * i), 0.004), from_ms(300.0 * i));
+  room.furniture.back() = {{3.08, 2.3, 0}, {3.48, 2.7, 1.8}};
+  const auto found = match_scan(map, surfels_of(room, T, from_ms(1000), 0.004), {T, 0.02, 0.1}, from_ms(1000));
+  ASSERT_TRUE(found);
+  EXPECT_LT(distance_m(found->T_map_sensor, T), 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ScanMatchLaw, testing::Range(1U, 9U));
+
+TEST(ScanMatch, ADirectionThatTheSceneDoesNotShowFollowsTheGuess) {
+  const auto room = corridor();
+  const Pose T = looking({0, 1, 1.2}, 1.5707963, 0.4);  // at a bare wall and the floor
+  LocalMap map;
+  map.insert(T, surfels_of(room, T, 1, 0.003), 1);
+  Pose guess = T;
+  guess.translation() += Eigen::Vector3d(0.06, 0.02, 0.02);
+  const auto found = match_scan(map, surfels_of(room, T, 2, 0.003), {guess, 0.02, 0.02}, 2);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->T_map_sensor.translation().x(), 0.06, 0.01);  // along the wall: the guess
+  EXPECT_NEAR(found->T_map_sensor.translation().y(), 1.0, 0.004);  // towards it: the scan
+  EXPECT_NEAR(found->T_map_sensor.translation().z(), 1.2, 0.004);
+}
+
+TEST(ScanMatch, WithoutAMapOrAFrameItIsAnError) {
+  const Pose T = looking({2, 2, 1}, 0);
+  LocalMap map;
+  const auto frame = surfels_of(furnished_room(1), T, 1, 0);
+  EXPECT_FALSE(match_scan(map, frame, {T, 0.1, 0.1}, 1));
+  map.insert(T, frame, 1);
+  EXPECT_FALSE(match_scan(map, {}, {T, 0.1, 0.1}, 1));
+}
+
+TEST(ScanMatch, AStrangeSceneIsAGradedResult) {
+  const Pose T = looking({3, 2.5, 1.2}, 0);
+  LocalMap map;
+  map.insert(T, surfels_of(furnished_room(1), T, 1, 0.003), 1);
+  const Pose T_far = looking({1.0, 1.0, 1.9}, 0.5, 0.6);
+  const auto found = match_scan(map, surfels_of(furnished_room(5), T_far, 2, 0.003), {T, 0.02, 0.05}, 2);
+  ASSERT_TRUE(found);
+  EXPECT_LT(found->overlap, 0.3);
+}
+
+}  // namespace
+}  // namespace liloc

@@ -5,14 +5,10 @@
 #include <cmath>
 #include <thread>
 
+#include "common/registration/simd.hpp"
+
 namespace liloc {
 namespace {
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(LILOC_SANITIZED)
-#define LILOC_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define LILOC_WIDE
-#endif
 
 /// sums[r][i] += rows[r][i]: one device point over every position of a slab. `width` is a multiple of 16.
 LILOC_WIDE void add_rows(std::int16_t* sums, const std::int8_t* rows, int count, int width, std::ptrdiff_t stride) {
@@ -46,6 +42,8 @@ class PaddedField {
   std::ptrdiff_t stride_;
   std::vector<std::int8_t> cells_;
 };
+
+constexpr std::size_t kFirstPass = 5;  // so many times `keep` cells survive a third of the points
 
 struct Cell {
   std::int16_t score;
@@ -120,7 +118,7 @@ void search_yaw(const PaddedField& field, const std::vector<Eigen::Vector3f>& le
 /// Hill climbing in x, y, z and yaw on the fine field.
 struct Climber {
   const ScoreField& field;
-  const std::vector<Eigen::Vector3f>& level_points;
+  const std::vector<Eigen::Vector3f> level_points;
 
   [[nodiscard]] int score(const Eigen::Vector4d& pose) const {
     const Eigen::Matrix3f R = yaw_rotation(pose[3]).cast<float>();
@@ -154,6 +152,17 @@ struct Climber {
   }
 };
 
+struct Start {
+  Eigen::Vector4d pose;  ///< x, y, z, yaw
+  int score;
+};
+
+std::vector<Eigen::Vector3f> every_nth(const std::vector<Eigen::Vector3f>& points, std::size_t n) {
+  std::vector<Eigen::Vector3f> result;
+  for (std::size_t i = 0; i < points.size(); i += n) result.push_back(points[i]);
+  return result;
+}
+
 }  // namespace
 
 std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distance_m, double angle_rad,
@@ -174,7 +183,7 @@ std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distan
 
 std::vector<Candidate> gravity_search(const Target& target, const Query& query, const Eigen::Vector3d& up_sensor,
                                       const GravitySearchOptions& options) {
-  const ScoreField& coarse = target.field_coarse;
+  const ScoreField& coarse = target.field_coarse();
   if (coarse.empty() || query.sparse.empty()) return {};
   const auto deadline = std::chrono::steady_clock::now() + options.time_limit;
   const Eigen::Matrix3d R_level_sensor =
@@ -187,13 +196,14 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query, 
   }
   const int margin = std::min(64, static_cast<int>(std::ceil(range / coarse.cell_m())) + 1);
   const PaddedField padded(coarse, margin);
+  const std::vector<Eigen::Vector3f> first_points = every_nth(level_points, 3);
 
   const int yaws = std::max(1, static_cast<int>(std::lround(360.0 / options.yaw_step_deg)));
   const int threads = std::clamp(options.threads, 1, 64);
-  std::vector<Best> best(static_cast<std::size_t>(threads), Best(options.keep));
+  std::vector<Best> best(static_cast<std::size_t>(threads), Best(kFirstPass * options.keep));
   const auto work = [&](int worker) {  // fixed shares, so that the answer does not depend on scheduling
     for (int yaw = worker; yaw < yaws && std::chrono::steady_clock::now() < deadline; yaw += threads)
-      search_yaw(padded, level_points, coarse.cell_m(), yaw, yaw * 2 * M_PI / yaws, &best[static_cast<std::size_t>(worker)]);
+      search_yaw(padded, first_points, coarse.cell_m(), yaw, yaw * 2 * M_PI / yaws, &best[static_cast<std::size_t>(worker)]);
   };
   {
     std::vector<std::jthread> pool;
@@ -205,20 +215,27 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query, 
   std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
     return std::tie(b.score, a.yaw, a.z, a.y, a.x) < std::tie(a.score, b.yaw, b.z, b.y, b.x);
   });
-  if (cells.size() > options.keep) cells.resize(options.keep);
+  if (cells.size() > kFirstPass * options.keep) cells.resize(kFirstPass * options.keep);
 
-  const Climber climber{target.field_fine, level_points};
-  std::vector<Candidate> candidates;
+  std::vector<Start> starts;
+  const Climber second{coarse, level_points}, third{target.field_fine(), every_nth(level_points, 2)};
   for (const Cell& cell : cells) {
     const Eigen::Vector3d position =
         coarse.origin().cast<double>() +
         (Eigen::Vector3d(cell.x, cell.y, cell.z).array() + 0.5).matrix() * coarse.cell_m();
-    Eigen::Vector4d pose(position.x(), position.y(), position.z(), cell.yaw * 2 * M_PI / yaws);
-    const int score = climber.climb(&pose);
+    const Eigen::Vector4d pose(position.x(), position.y(), position.z(), cell.yaw * 2 * M_PI / yaws);
+    starts.push_back({pose, second.score(pose)});
+  }
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.score > b.score; });
+  if (starts.size() > options.keep) starts.resize(options.keep);
+
+  std::vector<Candidate> candidates;
+  for (auto& [pose, ignored] : starts) {
+    const int score = third.climb(&pose);
     Candidate candidate;
     candidate.T_map_sensor.linear() = yaw_rotation(pose[3]) * R_level_sensor;
     candidate.T_map_sensor.translation() = pose.head<3>();
-    candidate.score = score / (ScoreField::kSurface * static_cast<double>(level_points.size()));
+    candidate.score = score / (ScoreField::kSurface * static_cast<double>(third.level_points.size()));
     candidates.push_back(candidate);
   }
   return distinct(std::move(candidates), 0.25, radians(8), options.propose);

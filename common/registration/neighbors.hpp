@@ -1,8 +1,7 @@
 #pragma once
-#include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/geometry/voxel.hpp"
@@ -31,6 +30,24 @@ class RadiusSearch {
             if (squared <= squared_radius_) visit(index_[i], squared);
           }
         }
+  }
+
+  /// Calls visit(indices of the cell's points, visitor of candidates) for each occupied cell; the visitor calls its
+  /// argument with every point of the cell and its 26 neighbours: all that can lie within the radius of any of them.
+  template <class Visit>
+  void for_each_cell(Visit&& visit) const {
+    for (const Run& run : table_) {
+      if (run.end == 0) continue;
+      const std::span<const std::uint32_t> own(index_.data() + run.begin, run.end - run.begin);
+      const Eigen::Vector3i centre = cell_of(sorted_[run.begin], inverse_);
+      visit(own, [&](auto&& take) {
+        for (int dz = -1; dz <= 1; ++dz)
+          for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx)
+              if (const Run* near = find(cell_key(centre + Eigen::Vector3i(dx, dy, dz))))
+                for (std::uint32_t i = near->begin; i < near->end; ++i) take(sorted_[i]);
+      });
+    }
   }
 
   struct Neighbor {

@@ -15,8 +15,9 @@ struct Normals {
   int pairs = 0;
 
   void add(const Vector6d& jacobian, double residual, double w) {
-    H.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, w);
-    g += jacobian * (w * residual);
+    const Vector6d weighted = w * jacobian;
+    H.noalias() += weighted * jacobian.transpose();
+    g.noalias() += weighted * residual;
     squared += w * residual * residual;
     weight += w;
     ++pairs;
@@ -44,7 +45,8 @@ Normals accumulate(const Side& side, const Pose& T, double distance_m, const Ref
     const Eigen::Vector3f offset = p - side.target.points[static_cast<std::size_t>(j)];
     const float squared = offset.squaredNorm();
     if (squared > limit) continue;
-    const double w = std::pow(width / (width + squared), 2);
+    const double root = width / (width + static_cast<double>(squared));
+    const double w = root * root;
     if (with_normals) {
       const Eigen::Vector3f& n_target = side.target.normals[static_cast<std::size_t>(j)];
       const Eigen::Vector3f n_source = Tf.linear() * side.source.normals[i];
@@ -64,7 +66,6 @@ Normals accumulate(const Side& side, const Pose& T, double distance_m, const Ref
       sum.add(jacobian, static_cast<double>(offset[axis]), w);
     }
   }
-  sum.H = sum.H.selfadjointView<Eigen::Lower>();
   return sum;
 }
 
@@ -135,12 +136,12 @@ Alignment refine(const Target& target, const Query& query, const Pose& T_target_
   Alignment result;
   Pose T = T_target_source_guess;
   const double middle_m = std::min(options.start_distance_m, 2 * options.end_distance_m);
-  if (options.coarse_iterations > 0)
-    iterate({target.coarse, target.nearest_coarse, query.medium}, options.coarse_iterations, options.start_distance_m,
-            middle_m, options, prior, &T);
-  const Side fine{target.cloud, target.nearest, query.cloud};
-  result.converged = iterate(fine, options.fine_iterations, std::min(middle_m, 0.125), options.end_distance_m,
-                             options, prior, &T);
+  iterate({target.coarse, target.nearest_coarse, query.sparse}, options.sparse_iterations, options.start_distance_m,
+          middle_m, options, prior, &T);
+  iterate({target.coarse, target.nearest_coarse, query.medium}, options.coarse_iterations, middle_m, middle_m, options,
+          prior, &T);
+  const Side fine{target.cloud, target.nearest, query.medium};
+  result.converged = iterate(fine, options.fine_iterations, middle_m, options.end_distance_m, options, prior, &T);
   result.T_target_source = normalized(T);
 
   const Normals sum = accumulate(fine, result.T_target_source, options.end_distance_m, options);

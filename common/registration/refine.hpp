@@ -5,9 +5,10 @@ namespace liloc {
 
 struct RefineOptions {
   double start_distance_m = 0.30;  ///< farther pairs are ignored at first ...
-  double end_distance_m = 0.10;    ///< ... and at last
-  int coarse_iterations = 12;      ///< on the thinned clouds, at distances down to twice the end; 0 skips
-  int fine_iterations = 8;         ///< on the full clouds
+  double end_distance_m = 0.08;    ///< ... and at last
+  int sparse_iterations = 10;      ///< few device points against the thinned target: far from the answer
+  int coarse_iterations = 6;       ///< thinned clouds, at distances down to twice the end
+  int fine_iterations = 8;         ///< thinned device cloud against the full target
   double min_normal_agreement = 0.5;  ///< cosine between the two normals of a pair
   bool point_to_point = false;     ///< the paper's ICP, for comparison
 };

@@ -28,8 +28,18 @@ Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor
 
 std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector<Candidate> candidates,
                                          const JudgeOptions& options) {
+  const Target& target = problem.target;
+  const Query& query = problem.query;
+  const double sketch_tolerance_m = 0.5 * (options.coarse_tolerance_m + options.fine_tolerance_m);
   for (Candidate& c : candidates)
-    c.score = judge(problem.target, problem.query, problem.query.sparse, c.T_map_sensor, options.coarse_tolerance_m).score;
+    c.score = judge(target, query, query.sparse, c.T_map_sensor, options.coarse_tolerance_m, 4).score;
+  candidates = distinct(std::move(candidates), 0.25, radians(8), options.sketch_most);
+  RefineOptions sketch = options.refine;
+  sketch.coarse_iterations = sketch.fine_iterations = 0;
+  for (Candidate& c : candidates) {
+    c.T_map_sensor = refine(target, query, c.T_map_sensor, sketch).T_target_source;
+    c.score = judge(target, query, query.sparse, c.T_map_sensor, sketch_tolerance_m, 2).score;
+  }
   std::vector<Hypothesis> refined;
   for (const Candidate& c : distinct(std::move(candidates), 0.25, radians(8), options.refine_most))
     refined.push_back(refine_and_judge(problem, c.T_map_sensor, options));

@@ -57,7 +57,9 @@ struct Hypothesis {
 
 struct JudgeOptions {
   double coarse_tolerance_m = 0.12, fine_tolerance_m = 0.05;
-  std::size_t refine_most = 12, keep = 5;
+  std::size_t sketch_most = 14;  ///< of the candidates, how many are refined with few points
+  std::size_t refine_most = 5;   ///< of those, how many are refined fully
+  std::size_t keep = 5;
   RefineOptions refine;
 };
 

@@ -32,17 +32,21 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
 
 }  // namespace
 
-Target make_target(Cloud cloud_map, std::vector<SightView> views, const TargetOptions& options) {
+const Target::Fields& Target::fields() const {
+  std::call_once(fields_->once, [this] {
+    fields_->coarse = ScoreField(coarse, views, kCoarseField_m, 0.13);
+    fields_->fine = ScoreField(coarse, views, kFineField_m, 0.08);
+  });
+  return *fields_;
+}
+
+Target make_target(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m) {
   Target target;
   target.cloud = std::move(cloud_map);
   target.views = std::move(views);
-  target.coarse = voxel_downsample(target.cloud, 2 * options.voxel_size_m);
-  target.nearest = NearestGrid(target.cloud.points, options.voxel_size_m, 2.5 * options.voxel_size_m);
-  target.nearest_coarse = NearestGrid(target.coarse.points, 2 * options.voxel_size_m, 0.35);
-  if (options.with_fields) {
-    target.field_coarse = ScoreField(target.coarse, target.views, kCoarseField_m, 0.13);
-    target.field_fine = ScoreField(target.coarse, target.views, kFineField_m, 0.08);
-  }
+  target.coarse = voxel_downsample(target.cloud, 2 * voxel_size_m);
+  target.nearest = NearestGrid(target.cloud.points, voxel_size_m, 1.6 * voxel_size_m);
+  target.nearest_coarse = NearestGrid(target.coarse.points, 3 * voxel_size_m, 0.32);
   return target;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 // The two sides of a global registration, each with what is computed once and read by every proposer and the judge.
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "common/geometry/cloud.hpp"
@@ -9,25 +11,33 @@
 
 namespace liloc {
 
-/// The room: cloud and views in the map frame. Immutable once made; shared by all threads.
-struct Target {
+/// The room: cloud and views in the map frame. Immutable once made; any thread may read it.
+class Target {
+ public:
   Cloud cloud;   ///< one point per voxel, normals towards the sensor that saw it
   Cloud coarse;  ///< the same at twice the voxel size
   NearestGrid nearest, nearest_coarse;
-  std::vector<SightView> views;       ///< the ceiling's; empty when two bare clouds are aligned
-  ScoreField field_coarse, field_fine;  ///< for the gravity search
+  std::vector<SightView> views;  ///< the ceiling's; empty when two bare clouds are aligned
+
+  /// What a device point is worth at each place, at 0.2 m and at 0.1 m: for searches. The first caller builds them.
+  [[nodiscard]] const ScoreField& field_coarse() const { return fields().coarse; }
+  [[nodiscard]] const ScoreField& field_fine() const { return fields().fine; }
+
+ private:
+  struct Fields {
+    std::once_flag once;
+    ScoreField coarse, fine;
+  };
+  [[nodiscard]] const Fields& fields() const;
+  std::unique_ptr<Fields> fields_ = std::make_unique<Fields>();
 };
 
-struct TargetOptions {
-  double voxel_size_m = 0.05;
-  bool with_fields = true;  ///< the gravity search needs them; a refinement does not
-};
-[[nodiscard]] Target make_target(Cloud cloud_map, std::vector<SightView> views, const TargetOptions& options);
+[[nodiscard]] Target make_target(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m);
 
 /// The device's cloud in its sensor frame.
 struct Query {
   Cloud cloud;   ///< one point per voxel, normals towards the device
-  Cloud medium;  ///< at twice the voxel size: refinement far from the answer
+  Cloud medium;  ///< at twice the voxel size: refinement and judgement
   Cloud sparse;  ///< a few hundred points spread evenly in space: search
   SightView view;  ///< rebuilt from the cloud; empty when no camera is known
 };

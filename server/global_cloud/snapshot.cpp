@@ -42,7 +42,7 @@ const Target& Snapshot::target() const {
       views.push_back(frame->view());
     }
     target_ = make_target(voxel_downsample(stitched, options_.voxel_size_m), std::move(views),
-                          {options_.voxel_size_m, true});
+                          options_.voxel_size_m);
   });
   return target_;
 }

@@ -88,13 +88,18 @@ Result<DepthImage> from_wire(const sensor_msgs_msg_dds__Image_& m, double depth_
     return fail("encoding is \"{}\", must be 16UC1 or 32FC1", encoding);
   if (auto valid = check_image(m, metres ? 4 : 2); !valid) return tl::unexpected(valid.error());
   DepthImage image{*stamp_ns, static_cast<int>(m.width), static_cast<int>(m.height), {}};
-  image.units.reserve(std::size_t{m.width} * m.height);
+  image.units.resize(std::size_t{m.width} * m.height);
   const bool big_endian = m.is_bigendian != 0;
   for (std::uint32_t v = 0; v < m.height; ++v) {
     const std::uint8_t* row = m.data._buffer + std::size_t{v} * m.step;
+    std::uint16_t* units = image.units.data() + std::size_t{v} * m.width;
+    if (!metres && !big_endian) {
+      std::memcpy(units, row, 2 * std::size_t{m.width});
+      continue;
+    }
     for (std::uint32_t u = 0; u < m.width; ++u)
-      image.units.push_back(metres ? units_of(load<float>(row + 4 * std::size_t{u}, big_endian), depth_scale_m)
-                                   : load<std::uint16_t>(row + 2 * std::size_t{u}, big_endian));
+      units[u] = metres ? units_of(load<float>(row + 4 * std::size_t{u}, big_endian), depth_scale_m)
+                        : load<std::uint16_t>(row + 2 * std::size_t{u}, big_endian);
   }
   return image;
 }

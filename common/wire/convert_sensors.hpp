@@ -15,8 +15,9 @@ namespace liloc::wire {
 [[nodiscard]] Result<ImuSample> from_wire(const sensor_msgs_msg_dds__Imu_& message);
 
 [[nodiscard]] std_msgs_msg_dds__Header_ header_of(StampNs stamp_ns, const std::string& frame_id);
-/// Lends the image's memory.
+/// Lends the image's memory, as that of points lends the cloud's.
 [[nodiscard]] sensor_msgs_msg_dds__Image_ to_wire(const DepthImage& image, const std::string& frame_id);
+sensor_msgs_msg_dds__Image_ to_wire(DepthImage&& image, const std::string& frame_id) = delete;
 [[nodiscard]] sensor_msgs_msg_dds__CameraInfo_ to_wire(const Camera& camera, StampNs stamp_ns,
                                                        const std::string& frame_id);
 [[nodiscard]] sensor_msgs_msg_dds__Imu_ to_wire(const ImuSample& sample, const std::string& frame_id);
@@ -25,7 +26,7 @@ struct PointsSample {
   sensor_msgs_msg_dds__PointCloud2_ message{};
   std::vector<sensor_msgs_msg_dds__PointField_> fields;
 };
-/// Lends the cloud's memory.
 [[nodiscard]] PointsSample to_wire(const Cloud& cloud_sensor, StampNs stamp_ns, const std::string& frame_id);
+PointsSample to_wire(Cloud&& cloud_sensor, StampNs stamp_ns, const std::string& frame_id) = delete;
 
 }  // namespace liloc::wire

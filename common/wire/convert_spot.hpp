@@ -14,6 +14,8 @@ struct RequestSample {
   std::vector<liloc_msg_LocalPose> poses;
 };
 [[nodiscard]] Result<RequestSample> to_wire(const SpotRequest& request, std::uint64_t session);
+Result<RequestSample> to_wire(SpotRequest&& request,
+                              std::uint64_t session) = delete;  // would lend from a temporary
 [[nodiscard]] liloc_msg_SpotReply to_wire(const SpotReply& reply, std::uint64_t session);
 
 /// The error names the field. The versions are the caller's to compare, first.

@@ -22,7 +22,8 @@ enum class Role {
   server,  ///< port index 0; at most one process a host and domain
   source,  ///< port index 1: streams of a recording or a simulation, seen by the server and by clients
   client,  ///< no fixed port: devices, ceiling LiDARs, tools
-  peer,    ///< finds every process of this host, e.g. the drivers on a robot
+  peer,  ///< finds every process of this host, e.g. the drivers on a robot; takes the lowest free index, so not
+         ///< on a host where a server is to start later in the same domain
 };
 
 struct DomainOptions {

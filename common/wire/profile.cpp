@@ -36,8 +36,8 @@ std::string interface_xml(const std::string& interface) {
 
 std::string peers_xml(const DomainOptions& options) {
   if (options.role == Role::server) return "";
-  const bool local = options.peers.empty();
-  const std::vector<std::string> hosts = local ? std::vector<std::string>{"127.0.0.1"} : options.peers;
+  std::vector<std::string> hosts = options.peers;
+  if (hosts.empty() || options.role == Role::peer) hosts.emplace_back("127.0.0.1");
   std::string xml = "<Peers>";
   for (const auto& host : hosts) {
     if (options.role == Role::peer)

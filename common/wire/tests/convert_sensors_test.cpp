@@ -39,7 +39,8 @@ TEST(ConvertImage, RoundTripKeepsUnitsAndStamp) {
 
 TEST(ConvertImage, BigEndianAndPaddedRowsAreUnderstood) {
   const std::vector<std::uint8_t> bytes = {0x12, 0x34, 0x00, 0x01, 9, 9, 0xff, 0xff, 0x00, 0x02, 9, 9};
-  auto message = to_wire(depth_2x2(), "lidar");
+  const DepthImage original = depth_2x2();
+  auto message = to_wire(original, "lidar");
   message.is_bigendian = 1;
   message.step = 6;
   lend(message.data, bytes);
@@ -52,7 +53,8 @@ TEST(ConvertImage, MetresBecomeUnitsAndNoReturnStaysZero) {
   const std::vector<float> metres = {1.5F, 0.0F, std::numeric_limits<float>::quiet_NaN(), 100.0F};
   std::vector<std::uint8_t> bytes(16);
   std::memcpy(bytes.data(), metres.data(), 16);
-  auto message = to_wire(depth_2x2(), "lidar");
+  const DepthImage original = depth_2x2();
+  auto message = to_wire(original, "lidar");
   copy_text(message.encoding, "32FC1");
   message.step = 8;
   lend(message.data, bytes);
@@ -114,7 +116,8 @@ TEST(ConvertPoints, FieldsAtAnyOffsetInAnyByteOrder) {
       put(20 * i + 14, 2.0F, big);
       put(20 * i + 2, 3.0F, big);
     }
-    auto sample = to_wire(Cloud{{{0, 0, 0}, {0, 0, 0}}, {}}, 9, "lidar");
+    const Cloud cloud_of_two{{{0, 0, 0}, {0, 0, 0}}, {}};
+    auto sample = to_wire(cloud_of_two, 9, "lidar");
     sample.fields[0].offset = 6;
     sample.fields[1].offset = 14;
     sample.fields[2].offset = 2;

@@ -97,7 +97,9 @@ struct Forger {
         make_writer<liloc_msg_SpotRequest>(seat.handle(), publisher.handle(), kRequestTopic, reliable_qos(8))
             .value();
   }
-  void send(const RequestSample& sample) const {
+  void send(const SpotRequest& request, const std::function<void(liloc_msg_SpotRequest&)>& forge = {}) const {
+    auto sample = to_wire(request, 1).value();
+    if (forge) forge(sample.message);
     ASSERT_TRUE(eventually([this] {
       dds_publication_matched_status_t status{};
       return dds_get_publication_matched_status(writer.handle(), &status) == 0 && status.current_count > 0;
@@ -143,7 +145,7 @@ TEST(Link, ARequestIsAnsweredWithAllItsFields) {
 TEST(Link, AClientThatClaimsAnotherIdIsNamedByItsPartition) {
   Server server(102);
   Forger forger(102, "robots/mallory");
-  forger.send(to_wire(sample_request("robot1"), 1).value());
+  forger.send(sample_request("robot1"));
   const auto arrival = server.arrivals.take();
   ASSERT_TRUE(arrival);
   EXPECT_EQ(arrival->problem, Reason::identity);
@@ -155,9 +157,7 @@ TEST(Link, AClientThatClaimsAnotherIdIsNamedByItsPartition) {
 TEST(Link, AnotherProtocolVersionIsReported) {
   Server server(103);
   Forger forger(103, "robots/old");
-  auto sample = to_wire(sample_request("old"), 1).value();
-  sample.message.protocol_version = kProtocolVersion + 1;
-  forger.send(sample);
+  forger.send(sample_request("old"), [](auto& message) { message.protocol_version = kProtocolVersion + 1; });
   const auto arrival = server.arrivals.take();
   ASSERT_TRUE(arrival);
   EXPECT_EQ(arrival->problem, Reason::protocol_version) << arrival->text;
@@ -167,9 +167,8 @@ TEST(Link, AnotherProtocolVersionIsReported) {
 TEST(Link, AMalformedRequestIsReportedByField) {
   Server server(104);
   Forger forger(104, "robots/bad");
-  auto sample = to_wire(sample_request("bad"), 1).value();
-  sample.message.voxel_size_m = std::numeric_limits<double>::quiet_NaN();
-  forger.send(sample);
+  forger.send(sample_request("bad"),
+              [](auto& message) { message.voxel_size_m = std::numeric_limits<double>::quiet_NaN(); });
   const auto arrival = server.arrivals.take();
   ASSERT_TRUE(arrival);
   EXPECT_EQ(arrival->problem, Reason::bad_request);
@@ -179,7 +178,7 @@ TEST(Link, AMalformedRequestIsReportedByField) {
 TEST(Link, WritersOutsideOneClientPartitionAreNotServed) {
   Server server(105);
   Forger strange(105, "robots/not a name");
-  strange.send(to_wire(sample_request("robot1"), 1).value());
+  strange.send(sample_request("robot1"));
   EXPECT_FALSE(server.arrivals.take(300ms));
   EXPECT_EQ(server.link->clients(), 0U);
 }

@@ -85,7 +85,7 @@ TEST(Processes, RequestsStreamsAndRepliesCross) {
   dispatcher->start();
   ASSERT_TRUE(eventually([&] { return (*link)->server_matched() && ceiling->readers() == 1; }));
 
-  constexpr std::uint64_t kRequests = 50;
+  constexpr std::uint64_t kRequests = 30;
   DepthImage image{0, kCamera.width, kCamera.height, {}};
   image.units.assign(320 * 240, 1500);
   std::vector<double> round_trip_ms;
@@ -101,6 +101,8 @@ TEST(Processes, RequestsStreamsAndRepliesCross) {
     round_trip_ms.push_back(watch.elapsed_ms());
     EXPECT_EQ(replies.back().seq, seq);
     EXPECT_TRUE(replies.back().verified());
+    lock.unlock();
+    std::this_thread::sleep_for(30ms);  // the pace of a LiDAR: streams keep the newest five frames
   }
   std::ranges::sort(round_trip_ms);
   RecordProperty("round_trip_p50_us", static_cast<int>(1e3 * round_trip_ms[kRequests / 2]));

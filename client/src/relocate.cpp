@@ -35,7 +35,7 @@ Cloud every_nth(const Cloud& cloud, std::size_t most) {
 std::vector<ScanMatch> relocate(const LocalMap& map, const std::vector<Surfel>& frame, StampNs now_ns,
                                 std::uint64_t seed) {
   if (map.size() < 100 || frame.size() < 50) return {};
-  const Target target = make_target(map.cloud(), {}, {.voxel_size_m = map.cell_m() / 2});
+  const Target target = make_target(map.cloud(), {}, map.cell_m() / 2);
   Query query;
   query.cloud = cloud_of(frame);
   query.medium = query.cloud;

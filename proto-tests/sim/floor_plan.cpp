@@ -21,7 +21,8 @@ bool covers(const Placement& placement, const Vector2d& half, const Vector2d& p,
 }  // namespace
 
 FloorPlan::FloorPlan(const Layout& layout, double radius_m)
-    : columns_(static_cast<int>(layout.size_m.x() / kCell)),
+    : size_m_(layout.size_m.head<2>()),
+      columns_(static_cast<int>(layout.size_m.x() / kCell)),
       rows_(static_cast<int>(layout.size_m.y() / kCell)) {
   free_.assign(static_cast<std::size_t>(columns_ * rows_), 1);
   for (int cell = 0; cell < columns_ * rows_; ++cell) {
@@ -73,6 +74,10 @@ void FloorPlan::keep_largest_part() {
 
 Vector2d FloorPlan::random_place(Random& random) const {
   return centre_of(free_cells_[static_cast<std::size_t>(random.below(static_cast<int>(free_cells_.size())))]);
+}
+
+double FloorPlan::distance_to_wall_m(const Vector2d& at) const {
+  return std::min(at.minCoeff(), (size_m_ - at).minCoeff());
 }
 
 Vector2d FloorPlan::nearest_free(const Vector2d& at) const {

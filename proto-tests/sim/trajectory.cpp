@@ -63,6 +63,15 @@ struct Wander {
   double rate[3], phase[3];
 };
 
+/// Who carries a device shows it the room: it turns some way towards the middle, less the nearer that is.
+void draw_gaze(std::vector<Vector6>& controls, const Eigen::Vector2d& middle) {
+  for (Vector6& c : controls) {
+    const Eigen::Vector2d to_middle = middle - c.head<2>();
+    const double pull = 0.6 * std::clamp(0.5 * (to_middle.norm() - 0.5), 0.0, 1.0);
+    c[3] += pull * std::sin(std::atan2(to_middle.y(), to_middle.x()) - c[3]);
+  }
+}
+
 /// What a hand adds while one walks: `share` 0 standing, 1 at full pace.
 void add_gait(std::vector<Vector6>& controls, const std::vector<double>& share, Random& random) {
   const Wander gaze(random, 9), nod(random, 5), tilt(random, 6);
@@ -118,8 +127,8 @@ MotionState Trajectory::at(double time_s) const {
   return state;
 }
 
-Trajectory sensor_trajectory(Random& random, const Walk& walk, Carriage carriage, double height_m,
-                             double still_s) {
+Trajectory sensor_trajectory(Random& random, const Walk& walk, Carriage carriage, const Eigen::Vector2d& middle,
+                             double height_m, double still_s) {
   const double tilt_down =
       carriage == Carriage::hand ? random.uniform(0.03, 0.09) : 0.06;  // positive pitch looks down
   const double lean = carriage == Carriage::hand ? 0.03 * random.normal() : 0.0;
@@ -136,6 +145,7 @@ Trajectory sensor_trajectory(Random& random, const Walk& walk, Carriage carriage
     const double moving_s = std::max(0.0, static_cast<double>(i) * kWalkStep_s - still_s);
     share.push_back(std::min(1.0, moving_s) * std::clamp(walk[i].speed_m_s + 0.3, 0.0, 1.0));
   }
+  if (carriage == Carriage::hand) draw_gaze(controls, middle);
   if (carriage == Carriage::hand) add_gait(controls, share, random);
   controls = smoothed(controls, 1);
   const auto still = std::min(controls.size(), static_cast<std::size_t>(still_s / kWalkStep_s) + 4);

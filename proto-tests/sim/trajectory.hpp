@@ -34,7 +34,7 @@ enum class Carriage { hand, wheels };
 
 /// Turns a walk into the motion of a sensor: by hand with gait and a wandering gaze, on wheels level and
 /// steady. It is exactly still until `still_s`.
-[[nodiscard]] Trajectory sensor_trajectory(Random& random, const Walk& walk, Carriage carriage, double height_m,
-                                           double still_s);
+[[nodiscard]] Trajectory sensor_trajectory(Random& random, const Walk& walk, Carriage carriage,
+                                           const Eigen::Vector2d& middle, double height_m, double still_s);
 
 }  // namespace liloc::sim

@@ -11,6 +11,7 @@ namespace {
 using Eigen::Vector2d;
 constexpr double kPersonalSpace = 0.6;  // metres between two bodies' middles
 constexpr double kPatience_s = 1.0;     // then one turns round and goes elsewhere
+constexpr double kOffWall_m = 1.5;      // for the goals of a device
 constexpr double kFarEnough_m = 3.0;    // for a goal, where the site has such a place
 
 double wrapped(double angle_rad) {
@@ -32,9 +33,21 @@ bool in_the_way(const Walker& self, const Vector2d& next, const std::vector<Walk
   });
 }
 
+/// A place worth going to: far enough, and for some away from the walls and the farthest of a few.
+Vector2d draw_goal(Random& random, const FloorPlan& plan, const Walker& walker) {
+  Vector2d best = plan.random_place(random);
+  for (int i = 0, choices = walker.style.across_the_room ? 6 : 1; i < choices; ++i) {
+    Vector2d goal = plan.random_place(random);
+    for (int k = 0; k < 10 && walker.style.across_the_room && plan.distance_to_wall_m(goal) < kOffWall_m; ++k)
+      goal = plan.random_place(random);
+    if ((goal - walker.state.at).norm() > (best - walker.state.at).norm() || i == 0) best = goal;
+  }
+  return best;
+}
+
 void choose_goal(Random& random, const FloorPlan& plan, Walker& walker) {
   for (int i = 0; i < 20 && walker.way.empty(); ++i) {
-    const Vector2d goal = plan.random_place(random);
+    const Vector2d goal = draw_goal(random, plan, walker);
     if ((goal - walker.state.at).norm() < kFarEnough_m / (1 + 0.2 * i)) continue;
     const auto way = plan.route(plan.nearest_free(walker.state.at), goal);
     walker.way.assign(way.begin(), way.end());

@@ -22,6 +22,7 @@ WalkStyle device_style(Random& random, const SimOptions& options) {
   style.turns_first = robot;
   style.start_s = options.still_seconds + 0.5;
   style.pause_chance = 0.15;
+  style.across_the_room = true;
   return style;
 }
 
@@ -79,7 +80,7 @@ Status World::populate(const SimOptions& options) {
   std::vector<WalkStyle> styles;
   for (int i = 0; i < options.devices; ++i) styles.push_back(device_style(draw, options));
   for (int i = 0; i < options.people; ++i)
-    styles.push_back({draw.uniform(0.9, 1.4), 2.5, draw.uniform(0, 2), 0.35, false});
+    styles.push_back({draw.uniform(0.9, 1.4), 2.5, draw.uniform(0, 2), 0.35, false, false});
   const auto walks = draw_walks(draw, plan, styles, options.seconds);
   const bool robot = options.device_kind == DeviceKind::robot;
   for (std::size_t i = 0; i < walks.size(); ++i) {
@@ -87,7 +88,7 @@ Status World::populate(const SimOptions& options) {
     if (carries) {
       Random hand(options.seed, 100 + i);
       devices_.push_back(sensor_trajectory(hand, walks[i], robot ? Carriage::wheels : Carriage::hand,
-                                           robot ? kRobotHeight_m : hand.uniform(1.0, 1.2),
+                                           plan.middle(), robot ? kRobotHeight_m : hand.uniform(1.0, 1.2),
                                            options.still_seconds));
     }
     Body body = carries && robot ? Body::robot() : Body::person(shapes);

@@ -15,13 +15,13 @@ NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell
   for (const auto& p : points)
     if (p.allFinite()) box.extend(p);
   if (box.isEmpty()) return;
-  const auto reach = static_cast<float>(reach_m);
-  const Eigen::Vector3d size = (box.sizes().array() + 2 * reach).cast<double>();
+  const Eigen::Vector3d size = (box.sizes().array() + 2 * static_cast<float>(reach_m)).cast<double>();
   const double blocks = size.prod() / std::pow(8 * cell_m, 3);
   const auto cell = static_cast<float>(blocks > kMostBlocks ? cell_m * std::cbrt(blocks / kMostBlocks) : cell_m);
+  const float reach = std::max(static_cast<float>(reach_m), 0.9F * cell);  // a point owns at least its own cell
   inverse_ = 1.0F / cell;
   origin_ = box.min().array() - reach;
-  const Eigen::Vector3i cells = (size.cast<float>() * inverse_).array().ceil().cast<int>() + 1;
+  const Eigen::Vector3i cells = ((box.sizes().array() + 2 * reach) * inverse_).ceil().cast<int>() + 1;
   extent_ = cells.cast<float>();
   block_count_ = (cells.array() + 7) / 8;
   blocks_.assign(static_cast<std::size_t>(block_count_.cast<std::int64_t>().prod()), kNone);

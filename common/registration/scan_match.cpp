@@ -23,6 +23,7 @@ struct Pair {
   float residual;
   float weight;
   float sd;
+  float normal_variance;  ///< rad^2, of the plane's normal
 };
 
 std::vector<Source> choose_sources(const std::vector<Surfel>& frame, const ScanMatchOptions& options) {
@@ -52,8 +53,10 @@ void find_pairs(const LocalMap& map, const std::vector<Source>& sources, const P
     const LocalMap::Cell* cell = map.find(p, Tf.linear() * s.normal);
     if (cell == nullptr) continue;
     const float trust = map.trust(*cell, now_ns) * std::max(0.1F, cell->surfel.flatness);
-    pairs.push_back(
-        {lever, cell->surfel.normal, cell->surfel.normal.dot(p - cell->surfel.mean), s.weight * trust, s.sd});
+    const Surfel& plane = cell->surfel;
+    const float thinness = 1 - plane.flatness;
+    pairs.push_back({lever, plane.normal, plane.normal.dot(p - plane.mean), s.weight * trust, s.sd,
+                     thinness * thinness / plane.count});
   }
 }
 
@@ -75,6 +78,7 @@ float kernel_width(const std::vector<Pair>& pairs, double guess_sd_m, int iterat
 struct Normal {
   Matrix6d H = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
+  double noise = 0;  ///< information along a direction that no plane faces, from errors of the normals alone
 };
 
 Normal accumulate(const std::vector<Pair>& pairs, float width, const ScanMatchOptions& options) {
@@ -87,6 +91,7 @@ Normal accumulate(const std::vector<Pair>& pairs, float width, const ScanMatchOp
     const double share = static_cast<double>(p.weight) * robust;
     const double weight = share / (static_cast<double>(p.sd) * p.sd);
     total += share;
+    n.noise += weight * static_cast<double>(p.normal_variance);
     J.head<3>() = p.lever.cross(p.normal).cast<double>();
     J.tail<3>() = p.normal.cast<double>();
     n.H.selfadjointView<Eigen::Lower>().rankUpdate(J, weight);
@@ -96,16 +101,17 @@ Normal accumulate(const std::vector<Pair>& pairs, float width, const ScanMatchOp
   const double correlated = std::min(1.0, options.independent_surfels / std::max(total, 1.0));
   n.H *= correlated;
   n.b *= correlated;
+  n.noise *= correlated;
   return n;
 }
 
 /// Projector onto the directions that the scene observes (solution remapping, Zhang et al. 2016).
-Matrix6d observed_directions(const Matrix6d& H, double least_share, int& unobserved) {
+Matrix6d observed_directions(const Normal& n, const ScanMatchOptions& options, int& unobserved) {
   Vector6d unit = Vector6d::Ones();
   unit.head<3>() /= kCharacteristicLengthM;
-  const Matrix6d scaled = unit.asDiagonal() * H * unit.asDiagonal();
+  const Matrix6d scaled = unit.asDiagonal() * n.H * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
-  const double least = least_share * scaled.trace();
+  const double least = std::max(options.observed_share * scaled.trace(), options.observed_noise * n.noise);
   Matrix6d keep = Matrix6d::Zero();
   unobserved = 0;
   for (int i = 0; i < 6; ++i) {
@@ -162,7 +168,7 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
     find_pairs(map, sources, match.T_map_sensor, now_ns, pairs);
     if (pairs.size() < 6) break;
     Normal n = accumulate(pairs, kernel_width(pairs, guess.sd_m, match.iterations, options), options);
-    const Matrix6d observed = observed_directions(n.H, options.observed_share, match.unobserved);
+    const Matrix6d observed = observed_directions(n, options, match.unobserved);
     add_prior(n, guess, match.T_map_sensor);
     match.information = n.H;
     Vector6d step = n.H.ldlt().solve(n.b);

@@ -89,8 +89,8 @@ TEST(ScanMatch, ADirectionThatTheSceneDoesNotShowFollowsTheGuess) {
   const auto found = match_scan(map, surfels_of(room, T, 2, 0.003), {guess, 0.02, 0.02}, 2);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->T_map_sensor.translation().x(), 0.06, 0.01);  // along the wall: the guess
-  EXPECT_NEAR(found->T_map_sensor.translation().y(), 1.0, 0.004);  // towards it: the scan
-  EXPECT_NEAR(found->T_map_sensor.translation().z(), 1.2, 0.004);
+  EXPECT_NEAR(found->T_map_sensor.translation().y(), 1.0, 0.006);  // towards it: the scan
+  EXPECT_NEAR(found->T_map_sensor.translation().z(), 1.2, 0.006);
 }
 
 TEST(ScanMatch, WithoutAMapOrAFrameItIsAnError) {

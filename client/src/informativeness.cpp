@@ -63,8 +63,8 @@ FrameFault Informativeness::compare(double sd_m) const {
   const double usual = median({recent_.begin(), recent_.end()});
   std::vector<double> off;
   for (const double s : recent_) off.push_back(std::abs(s - usual));
-  const double limit =
-      std::max(options_.sudden_share * usual, options_.sudden_deviations * 1.4826 * median(std::move(off)));
+  const double limit = std::max({options_.sudden_share * usual, options_.sudden_m,
+                                 options_.sudden_deviations * 1.4826 * median(std::move(off))});
   if (sd_m > usual + limit) return FrameFault::spike;
   return sd_m < usual - limit ? FrameFault::drop : FrameFault::none;
 }

@@ -2,8 +2,7 @@
 #include <string>
 
 #include "client/src/engine.hpp"
-#include "client/src/imu_track.hpp"
-#include "common/registration/scan_match.hpp"
+#include "client/src/motion_model.hpp"
 
 namespace liloc {
 
@@ -48,7 +47,6 @@ class Odometry {
   [[nodiscard]] const LocalMap& map() const { return map_; }
 
  private:
-  [[nodiscard]] MotionGuess guess(StampNs stamp_ns, const ImuTrack* imu);
   /// Whether the guess and the overlap speak for a match.
   [[nodiscard]] bool believable(const ScanMatch& match, const MotionGuess& guess,
                                 const DepthImage& image) const;
@@ -57,26 +55,24 @@ class Odometry {
   /// From the guess, and by features where that fails.
   [[nodiscard]] std::optional<ScanMatch> match(const DepthImage& image, const std::vector<Surfel>& frame,
                                                const MotionGuess& guess, OdometryStep& step);
-  void accept(const ScanMatch& match, StampNs stamp_ns, ImuTrack* imu, OdometryStep& step);
+  void accept(const ScanMatch& match, const FrameStep& from, const MotionGuess& guess, ImuTrack* imu,
+              OdometryStep& step);
   /// Dead reckoning: the guess is the pose.
   void reckon(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step);
-  void coast(const MotionGuess& guess, StampNs stamp_ns, bool usable, OdometryStep& step);
+  void coast(const MotionGuess& guess, const FrameStep& from, bool usable, OdometryStep& step);
   void start_segment(StampNs stamp_ns);
   void remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor);
 
   OdometryOptions options_;
   LocalMap map_;
+  MotionModel motion_;
   std::uint32_t segment_ = 0;
-  bool started_ = false;
   StampNs last_ns_ = 0;       ///< of the last frame
   StampNs unmatched_ns_ = 0;  ///< of the first usable frame since the last match that fits nothing; 0: none
   StampNs anchored_ns_ = 0;   ///< of the last matched frame
   StampNs keyframe_ns_ = 0;
   StampNs recovered_ns_ = 0;  ///< of the last attempt by features
   Pose T_odom_last_ = Pose::Identity(), T_odom_keyframe_ = Pose::Identity();
-  Eigen::Vector3d velocity_odom_ = Eigen::Vector3d::Zero();      ///< of the sensor, m/s
-  Eigen::Vector3d velocity_imu_odom_ = Eigen::Vector3d::Zero();  ///< of the IMU after the guess, m/s
-  Eigen::Vector3d turn_rate_ = Eigen::Vector3d::Zero();          ///< sensor axes, rad/s
 };
 
 }  // namespace liloc

@@ -24,8 +24,9 @@ struct ScanMatchOptions {
   double kernel_min_m = 0.04;        ///< never narrower: what shows motion along a wall is to be heard
   double kernel_max_m = 0.10;        ///< farther from its plane, a surfel hardly counts
   double independent_surfels = 250;  ///< neighbours err together: no more than so many count as independent
-  double observed_noise = 3;          ///< a direction with less information than so many times what noisy normals feign,
-  double observed_share = 1e-4;      ///< or with less of the whole than so, is left to the guess
+  double observed_noise =
+      3;  ///< a direction with less information than so many times what noisy normals feign,
+  double observed_share = 1e-4;  ///< or with less of the whole than so, is left to the guess
 };
 
 struct ScanMatch {

@@ -42,7 +42,7 @@ Status check_image(const sensor_msgs_msg_dds__Image_& m, std::uint64_t pixel_byt
 
 std::uint16_t units_of(float metres, double depth_scale_m) {
   const double units = static_cast<double>(metres) / depth_scale_m;
-  return std::isfinite(units) && units > 0 && units < 65535.5 ? static_cast<std::uint16_t>(units + 0.5) : 0;
+  return std::isfinite(units) && units > 0 && units < 65535.5 ? static_cast<std::uint16_t>(std::lround(units)) : 0;
 }
 
 struct Xyz {

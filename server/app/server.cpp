@@ -72,7 +72,10 @@ Status Server::open_streams(const ServerOptions& options) {
   ServiceBackend backend;
   backend.locate = [this](const SpotRequest& request) { return localizer_.locate(request); };
   backend.forget = [this](const std::string& client_id) { localizer_.forget(client_id); };
-  backend.ready = [this](StampNs stamp_ns) { return ingest_->seen(stamp_ns); };
+  // A LiDAR whose last frame still counts for the stamp need not show a newer one: people move in between,
+  // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
+  const StampNs match_ns = cloud_options(options).match_ns;
+  backend.ready = [this, match_ns](StampNs stamp_ns) { return ingest_->seen(stamp_ns - match_ns); };
   auto service = Service::create(*dispatcher_, options.service, std::move(backend));
   if (!service) return tl::unexpected(service.error());
   service_ = std::move(*service);

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 pid_t spawn(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), LILOC_SERVER);
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (auto& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   pid_t pid = -1;
@@ -39,7 +40,7 @@ int exit_code(pid_t pid, std::chrono::milliseconds limit = 20s) {
 }
 
 fs::path site_file() {
-  const fs::path file =
+  fs::path file =
       fs::temp_directory_path() / ("liloc_program_test_" + std::to_string(getpid()) + ".json");
   std::ofstream(file)
       << R"({"world_frame": "map", "global_lidars": [{"id": "ceiling0", "width": 32, "height": 24,

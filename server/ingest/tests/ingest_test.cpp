@@ -25,7 +25,7 @@ Site two_lidars() {
 
 DepthImage image(StampNs stamp_ns, int width = kCamera.width) {
   DepthImage depth{stamp_ns, width, kCamera.height, {}};
-  depth.units.assign(static_cast<std::size_t>(width * kCamera.height), 2000);
+  depth.units.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(kCamera.height), 2000);
   depth.units[5] = 1234;
   return depth;
 }

@@ -238,6 +238,7 @@ TEST(Desk, UnderLoadEachRequestIsAnsweredExactlyOnce) {
   constexpr int kThreads = 8;
   constexpr std::uint64_t kEach = 300;
   std::vector<std::thread> clients;
+  clients.reserve(kThreads);
   for (int t = 0; t < kThreads; ++t)
     clients.emplace_back([&, t] {
       for (std::uint64_t seq = 1; seq <= kEach; ++seq) {

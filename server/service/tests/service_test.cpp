@@ -73,6 +73,7 @@ TEST(Service, ASlowLocalizerStillAnswersEveryRequestOfEveryClient) {
   dispatcher->start();
   {
     std::vector<std::unique_ptr<Client>> clients;
+    clients.reserve(kClients);
     for (int c = 0; c < kClients; ++c)
       clients.push_back(std::make_unique<Client>(kDomain, "robot" + std::to_string(c)));
     EXPECT_EQ((*service)->clients(), static_cast<std::size_t>(kClients));

@@ -56,22 +56,23 @@ void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* re
 }
 
 /// Verified or why not yet: the three equality checks among the spots' own answers, and a lead over every rival.
-std::optional<Reason> Session::decide(const std::vector<Hypothesis>& found) const {
-  if (conclusive(found)) return Reason::conclusive;
+std::optional<Session::Decision> Session::decide(const Spot& spot, const std::vector<Hypothesis>& found) const {
+  if (conclusive(found))
+    return Decision{Reason::conclusive, found.front().T_map_sensor() * spot.T_odom_sensor().inverse(), found.front()};
   const Track& best = tracks_.best_first().front();
   const auto spots = static_cast<double>(tracks_.spots());
-  if (best.supports() < verify_.spots || own_answers_.size() < 3) return std::nullopt;
+  if (best.supports() < verify_.spots || !best.fits.back() || own_answers_.size() < 3) return std::nullopt;
   if (tracks_.lead() < verify_.lead_per_spot * spots) return std::nullopt;
   const Verification v = verify({own_answers_[0], own_answers_[1], own_answers_[2]}, verify_.equality);
   if (v.verdict == Verdict::none) return std::nullopt;
   const SpotPose newest{v.T_map_sensor[2], own_answers_[2].T_odom_sensor};
   const SpotPose tracked{best.T_map_odom * newest.T_odom_sensor, newest.T_odom_sensor};
   if (!equal(tracked, newest, verify_.equality)) return std::nullopt;
-  return v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed;
+  return Decision{v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed, best.T_map_odom, best.latest};
 }
 
 /// Searches the whole room from this spot and lets all tracks weigh it; locks on and returns why once that is safe.
-std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& spot, std::vector<Hypothesis>* found) {
+std::optional<Session::Decision> Session::search_room(const std::shared_ptr<const Spot>& spot, std::vector<Hypothesis>* found) {
   *found = search(*spot, options_);
   spots_since_search_ = 0;
   if (found->empty()) return std::nullopt;
@@ -79,22 +80,22 @@ std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& sp
   own_answers_.push_back({found->front().T_map_sensor(), spot->T_odom_sensor()});
   if (own_answers_.size() > 3) own_answers_.pop_front();
   last_margin_ = margin_of(*found);
-  const auto reason = decide(*found);
-  if (reason) {
-    T_map_odom_ = tracks_.best_first().front().T_map_odom;
+  const auto decision = decide(*spot, *found);
+  if (decision) {
+    T_map_odom_ = decision->T_map_odom;
     weak_in_a_row_ = 0;
   }
-  return reason;
+  return decision;
 }
 
 void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
   std::vector<Hypothesis> found;
-  const auto reason = search_room(spot, &found);
+  const auto decision = search_room(spot, &found);
   if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
-  report(tracks_.best_first().front().latest, last_margin_, reply);
-  if (reason) {
+  report(decision ? decision->here : tracks_.best_first().front().latest, last_margin_, reply);
+  if (decision) {
     reply->T_map_odom = T_map_odom_;
-    return conclude(SpotStatus::verified, *reason, reply);
+    return conclude(SpotStatus::verified, decision->reason, reply);
   }
   const bool few = tracks_.spots() < static_cast<std::size_t>(verify_.spots);
   const bool led = tracks_.lead() >= verify_.lead_per_spot * static_cast<double>(tracks_.spots());
@@ -125,9 +126,9 @@ void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<
   // lifted and put elsewhere must not be believed for long.
   if (++spots_since_search_ >= verify_.research_every || weak_in_a_row_ >= 2) {
     std::vector<Hypothesis> found;
-    if (const auto reason = search_room(spot, &found)) {
-      report(tracks_.best_first().front().latest, last_margin_, reply);
-      conclude(SpotStatus::verified, *reason, reply);
+    if (const auto decision = search_room(spot, &found)) {
+      report(decision->here, last_margin_, reply);
+      conclude(SpotStatus::verified, decision->reason, reply);
     }
   }
   if (reply->verified()) reply->T_map_odom = T_map_odom_;

@@ -39,8 +39,13 @@ class Session {
   void answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   void start_segment(std::uint32_t segment);
   [[nodiscard]] bool conclusive(const std::vector<Hypothesis>& found) const;
-  [[nodiscard]] std::optional<Reason> decide(const std::vector<Hypothesis>& found) const;
-  std::optional<Reason> search_room(const std::shared_ptr<const Spot>& spot, std::vector<Hypothesis>* found);
+  struct Decision {
+    Reason reason;
+    Pose T_map_odom;
+    Hypothesis here;
+  };
+  [[nodiscard]] std::optional<Decision> decide(const Spot& spot, const std::vector<Hypothesis>& found) const;
+  std::optional<Decision> search_room(const std::shared_ptr<const Spot>& spot, std::vector<Hypothesis>* found);
   bool follow(const SpotRequest& request, const Spot& spot, SpotReply* reply);
 
   const LocalizerOptions options_;

@@ -1,0 +1,234 @@
+#include "server/localization/localizer.hpp"
+
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "common/codec/codec.hpp"
+#include "common/geometry/voxel.hpp"
+#include "common/testing/box_room.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr StampNs kT0 = 1'700'000'000'000'000'000, kStep = from_ms(800);
+
+/// A room under three ceiling LiDARs, and a device that walks in it with its own idea of where odom lies.
+struct World {
+  explicit World(unsigned seed_in, LocalizerOptions options = {})
+      : seed(seed_in), room(scene::furnished_room(seed_in)) {
+    const std::array poses{scene::looking({0.2, 0.2, 2.6}, radians(45), radians(35)),
+                           scene::looking({5.8, 0.3, 2.6}, radians(130), radians(35)),
+                           scene::looking({3.0, 4.8, 2.6}, radians(-90), radians(35))};
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      site.global_lidars.push_back({"ceiling" + std::to_string(i), scene::small_camera(), 6, poses[i]});
+    cloud = std::make_unique<GlobalCloud>(site, GlobalCloudOptions{});
+    localizer = std::make_unique<Localizer>(*cloud, options);
+  }
+
+  [[nodiscard]] Pose truth(int k) const {
+    return scene::looking({2.2 + 0.15 * k, 2.0 + 0.05 * k, 1.2}, 0.8 * seed + 0.12 * k, radians(12));
+  }
+
+  void watch(int k) {
+    for (std::size_t i = 0; i < site.global_lidars.size(); ++i)
+      ASSERT_TRUE(
+          cloud->add_depth(i, scene::render(room, site.global_lidars[i].T_map_sensor, scene::small_camera(),
+                                            kT0 + k * kStep + from_ms(10), 0.005, seed + 100 + unsigned(i))));
+  }
+
+  [[nodiscard]] SpotRequest request(int k, const Pose& T_map_device) const {
+    const Camera camera = scene::small_camera();
+    SpotRequest r;
+    r.client_id = "robot";
+    r.seq = static_cast<std::uint64_t>(k) + 1;
+    r.stamp_ns = kT0 + k * kStep;
+    r.T_odom_sensor = T_map_odom.inverse() * T_map_device;
+    r.view = {camera, 0.25, 8.5};
+    const auto image = scene::render(room, T_map_device, camera, r.stamp_ns, 0.005, seed);
+    r.lpc = *encode(voxel_downsample(*depth_to_cloud(image, camera), 0.05));
+    r.up_sensor = T_map_device.linear().transpose() * Eigen::Vector3d::UnitZ();
+    return r;
+  }
+
+  SpotReply ask(int k) {
+    watch(k);
+    return localizer->locate(request(k, truth(k)));
+  }
+
+  unsigned seed;
+  scene::BoxRoom room;
+  Site site;
+  std::unique_ptr<GlobalCloud> cloud;
+  std::unique_ptr<Localizer> localizer;
+  Pose T_map_odom = scene::looking({-3, 2, 0.4}, 2.0);
+};
+
+bool near(const Pose& a, const Pose& b) {
+  return distance_m(a, b) < 0.1 && degrees(angle_between_rad(a, b)) < 3;
+}
+
+class LocalizerLaw : public testing::TestWithParam<unsigned> {};
+
+TEST_P(LocalizerLaw, AWalkIsVerifiedAndMapToOdomIsRight) {
+  World world(GetParam());
+  bool verified = false;
+  for (int k = 0; k < 6; ++k) {
+    const SpotReply reply = world.ask(k);
+    ASSERT_TRUE(reply.T_map_sensor) << name_of(reply.reason) << " " << reply.text;
+    if (!reply.verified()) continue;
+    verified = true;
+    EXPECT_TRUE(near(*reply.T_map_sensor, world.truth(k))) << "spot " << k;
+    ASSERT_TRUE(reply.T_map_odom);
+    EXPECT_TRUE(near(*reply.T_map_odom * world.request(k, world.truth(k)).T_odom_sensor, world.truth(k)));
+    EXPECT_EQ(reply.gpc_stamp_ns, kT0 + k * kStep + from_ms(10));
+  }
+  EXPECT_TRUE(verified);
+}
+
+TEST_P(LocalizerLaw, AColdRequestIsAnsweredOnItsOwn) {
+  World world(GetParam());
+  world.watch(0);
+  SpotRequest request = world.request(0, world.truth(0));
+  request.cold = true;
+  const SpotReply first = world.localizer->locate(request);
+  ASSERT_TRUE(first.T_map_sensor);
+  EXPECT_TRUE(near(*first.T_map_sensor, world.truth(0)) || (!first.verified() && first.margin < 0.1))
+      << name_of(first.reason) << " overlap " << first.overlap << " fitness " << first.fitness << " margin " << first.margin << " off "
+      << distance_m(*first.T_map_sensor, world.truth(0)) << " m "
+      << degrees(angle_between_rad(*first.T_map_sensor, world.truth(0))) << " deg";
+  const SpotReply again = world.localizer->locate(request);
+  EXPECT_TRUE(again.T_map_sensor->isApprox(*first.T_map_sensor)) << "nothing is remembered";
+  EXPECT_EQ(again.status, first.status);
+}
+
+TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {
+  World world(GetParam());
+  for (int k = 0; k < 5; ++k) (void)world.ask(k);
+  const auto elsewhere = [&](int k) {  // odometry knows nothing of the lift
+    return scene::looking({3.6 - 0.1 * k, 3.0, 1.2}, 0.8 * GetParam() + 2.2 + 0.1 * k, radians(12));
+  };
+  world.T_map_odom = elsewhere(5) * world.truth(5).inverse() * world.T_map_odom;
+  bool found = false;
+  for (int k = 5; k < 14; ++k) {
+    world.watch(k);
+    const SpotReply reply = world.localizer->locate(world.request(k, elsewhere(k)));
+    if (!reply.verified()) continue;
+    EXPECT_TRUE(near(*reply.T_map_sensor, elsewhere(k)))
+        << "spot " << k << " " << name_of(reply.reason) << " overlap " << reply.overlap << " fitness " << reply.fitness << " off "
+        << distance_m(*reply.T_map_sensor, elsewhere(k)) << " m " << degrees(angle_between_rad(*reply.T_map_sensor, elsewhere(k))) << " deg";
+    found = found || near(*reply.T_map_sensor, elsewhere(k));
+  }
+  EXPECT_TRUE(found);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, LocalizerLaw, testing::Range(1U, 6U));
+
+TEST(Localizer, RefusalsSayWhy) {
+  World world(1);
+  SpotReply reply = world.localizer->locate(world.request(0, world.truth(0)));
+  EXPECT_EQ(reply.reason, Reason::no_gpc);
+  EXPECT_EQ(reply.status, SpotStatus::refused);
+  EXPECT_FALSE(reply.text.empty());
+  world.watch(0);
+  SpotRequest damaged = world.request(0, world.truth(0));
+  damaged.lpc.bytes.resize(damaged.lpc.bytes.size() / 2);
+  EXPECT_EQ(world.localizer->locate(damaged).reason, Reason::bad_cloud);
+  SpotRequest tiny = world.request(0, world.truth(0));
+  Cloud few;
+  few.points = {{0, 0, 1}, {0, 0.1F, 1}, {0.1F, 0, 1}};
+  tiny.lpc = *encode(few);
+  reply = world.localizer->locate(tiny);
+  EXPECT_EQ(reply.reason, Reason::bad_cloud);
+  EXPECT_THAT(reply.text, testing::HasSubstr("points"));
+}
+
+TEST(Localizer, ADeviceOutsideTheCoveredAreaIsNeverVerified) {
+  World world(2);
+  scene::BoxRoom other = scene::furnished_room(77);  // a larger room, which no ceiling LiDAR sees
+  other.walls.high = {9.5, 7.0, 3.4};
+  std::swap(other, world.room);
+  const scene::BoxRoom& seen = other;
+  for (int k = 0; k < 6; ++k) {
+    for (std::size_t i = 0; i < world.site.global_lidars.size(); ++i)
+      ASSERT_TRUE(world.cloud->add_depth(i, scene::render(seen, world.site.global_lidars[i].T_map_sensor,
+                                                          scene::small_camera(), kT0 + k * kStep, 0.005, 5)));
+    EXPECT_FALSE(world.localizer->locate(world.request(k, world.truth(k))).verified()) << "spot " << k;
+  }
+}
+
+TEST(Localizer, GravityThatIsTenDegreesWrongIsSurvived) {
+  World world(3);
+  int right = 0;
+  for (int k = 0; k < 4; ++k) {
+    world.watch(k);
+    SpotRequest request = world.request(k, world.truth(k));
+    request.up_sensor = so3_exp({radians(10), 0, 0}) * world.truth(k).linear().transpose() * Eigen::Vector3d::UnitZ();
+    const SpotReply reply = world.localizer->locate(request);
+    right += reply.T_map_sensor && near(*reply.T_map_sensor, world.truth(k));
+    EXPECT_TRUE(!reply.verified() || near(*reply.T_map_sensor, world.truth(k)));
+  }
+  EXPECT_GE(right, 3);
+}
+
+TEST(Localizer, WithoutGravityFeaturesDecide) {
+  World world(4);
+  int right = 0;
+  for (int k = 0; k < 4; ++k) {
+    world.watch(k);
+    SpotRequest request = world.request(k, world.truth(k));
+    request.up_sensor.reset();
+    const SpotReply reply = world.localizer->locate(request);
+    right += reply.T_map_sensor && near(*reply.T_map_sensor, world.truth(k));
+  }
+  EXPECT_GE(right, 3);
+}
+
+TEST(Localizer, TheSameRequestsGiveTheSameAnswers) {
+  World a(5), b(5);
+  for (int k = 0; k < 4; ++k) {
+    const SpotReply x = a.ask(k), y = b.ask(k);
+    ASSERT_TRUE(x.T_map_sensor && y.T_map_sensor);
+    EXPECT_TRUE((x.T_map_sensor->matrix().array() == y.T_map_sensor->matrix().array()).all());
+    EXPECT_EQ(x.reason, y.reason);
+  }
+}
+
+TEST(Localizer, ManyClientsAtOnce) {
+  World world(1);
+  world.watch(0);
+  std::vector<std::jthread> clients;
+  for (int c = 0; c < 4; ++c)
+    clients.emplace_back([&, c] {
+      SpotRequest request = world.request(0, world.truth(0));
+      for (int i = 0; i < 3; ++i) {
+        request.client_id = "robot" + std::to_string(c);
+        request.seq = static_cast<std::uint64_t>(i) + 1;
+        const SpotReply reply = world.localizer->locate(request);
+        EXPECT_EQ(reply.client_id, request.client_id);
+        EXPECT_TRUE(reply.T_map_sensor);
+      }
+      world.localizer->forget(request.client_id);
+    });
+}
+
+class BaselineMethods : public testing::TestWithParam<const char*> {};
+
+TEST_P(BaselineMethods, RunAndAnswer) {
+  LocalizerOptions options;
+  options.method = *method_from(GetParam());
+  World world(2, options);
+  int answered = 0;
+  for (int k = 0; k < 3; ++k) answered += world.ask(k).T_map_sensor.has_value();
+  EXPECT_EQ(answered, 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Paper, BaselineMethods,
+                         testing::Values("static-noopt", "dynamic-noopt", "dynamic-nover"));
+
+TEST(Method, AnUnknownNameListsTheKnown) {
+  EXPECT_THAT(method_from("magic").error().message, testing::HasSubstr("dynamic-nover"));
+}
+
+}  // namespace
+}  // namespace liloc

@@ -133,6 +133,9 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
   } else {
     const FrameStep from{last_ns_, image.stamp_ns, anchored_ns_, T_odom_last_};
     const MotionGuess expected = motion_.guess(from, imu);
+    // After a long time any corner may look like one of the map's.
+    if (usable && map_.size() > 0 && image.stamp_ns - anchored_ns_ > options_.bridge_ns)
+      start_segment(image.stamp_ns);
     std::optional<ScanMatch> matched;
     if (usable && map_.size() > 0 && options_.method != LocalMethod::dead_reckoning)
       matched = match(image, frame, expected, step);

@@ -15,6 +15,7 @@ struct OdometryOptions {
   StampNs coast_ns =
       from_ms(2000);  ///< longest stretch over which the guess moves on; half of it without an IMU
   StampNs give_up_ns = from_ms(700);  ///< of usable frames that fit nothing, after which a new segment starts
+  StampNs bridge_ns = from_ms(5000);  ///< longest stretch without sight that is bridged at all
   double min_overlap = 0.25;          ///< of the frame with the map, below which a match is not believed
   double min_overlap_lost = 0.25;     ///< the same where no guess speaks for the match, but the view agrees:
   double max_refuted_share = 0.18;    ///< of the map in view that the image may look through

@@ -113,19 +113,23 @@ TEST(Engine, ABlockedCameraIsBridgedAndAskedAboutAfterwards) {
   EXPECT_TRUE(walker.engine.take_request());
 }
 
-TEST(Engine, AnotherRoomAfterABlackoutStartsANewSegment) {
-  EngineOptions options = engine_options();
-  Engine engine(options);
-  const auto here = scene::furnished_room(1), there = scene::corridor();
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(engine.add_depth(frame_at(here, i)));
-  const std::uint32_t before = engine.add_depth(frame_at(here, 20))->odom_segment;
-  for (int i = 21; i < 60; ++i) ASSERT_TRUE(engine.add_depth(covered_at(i)));
-  std::uint32_t after = before;
-  for (int i = 60; i < 90; ++i) {
-    const Pose T = scene::looking({0.02 * i, 1.3, 1.9}, 1.0, 0.7);
-    after = engine.add_depth(scene::render(there, T, options.camera, stamp_of(i), 0.004))->odom_segment;
-  }
-  EXPECT_EQ(after, before + 1);
+TEST(Engine, ALongBlackoutStartsANewSegmentWhereTheOldOneEnded) {
+  Walker walker(engine_options());
+  FrameResult frame;
+  for (int i = 0; i < 20; ++i) frame = walker.step();
+  for (int i = 0; i < 80; ++i) frame = walker.step(true);  // 5.3 s
+  const Pose before = frame.T_odom_sensor;
+  EXPECT_EQ(frame.odom_segment, 0U);
+  frame = walker.step();
+  EXPECT_EQ(frame.odom_segment, 1U);
+  EXPECT_LT(distance_m(before, frame.T_odom_sensor), 0.05);  // bridged, no jump
+  const auto request = walker.engine.take_request();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->odom_segment, 1U);
+  EXPECT_EQ(request->local_poses.size(), 1U);  // those of the old segment say nothing about it
+  frame = walker.step();
+  EXPECT_EQ(frame.method, "icp");
+  EXPECT_EQ(frame.odom_segment, 1U);
 }
 
 TEST(Engine, ARequestCarriesWhatTheServerNeeds) {

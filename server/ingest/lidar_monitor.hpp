@@ -21,18 +21,18 @@ class LidarMonitor {
 
   /// waiting: nothing yet, and that for less than the limit; silent: no good frame for five periods, at least
   /// one second; malformed: so were the last three, or all of
-  /// late; slow: under half of the expected rate over two seconds.
+  /// late; slow: under half of the expected rate over two seconds, once it has run
+  /// for as long.
   [[nodiscard]] wire::LidarHealth assess(Time now) const;
 
  private:
-  static constexpr std::chrono::seconds kWindow{2};
-
   [[nodiscard]] std::chrono::duration<double> silence_limit() const;
+  [[nodiscard]] std::chrono::duration<double> rate_window() const;  ///< two seconds, or more for a slow LiDAR
 
   std::string id_;
   double rate_hz_;
   Time start_, last_frame_, last_malformed_;
-  std::deque<Time> recent_;  // frames of the last two seconds, at most 512
+  std::deque<Time> recent_;  // frames of the rate window, at most 512
   std::uint64_t frames_ = 0, malformed_ = 0, malformed_in_a_row_ = 0;
   std::string last_error_;
 };

@@ -24,7 +24,10 @@ TEST(LidarMonitor, FallsSilentAndComesBack) {
   EXPECT_NEAR(monitor.assess(now).measured_hz, 10, 1);
   EXPECT_EQ(monitor.assess(now + 1100ms).state, LidarState::silent);
   now += 10s;
-  for (int i = 0; i < 30; ++i) monitor.on_frame(now += 100ms);
+  for (int i = 0; i < 30; ++i) {
+    monitor.on_frame(now += 100ms);
+    EXPECT_EQ(monitor.assess(now).state, LidarState::ok) << "not slow for its silence, frame " << i;
+  }
   EXPECT_EQ(monitor.assess(now).state, LidarState::ok);
   EXPECT_EQ(monitor.assess(now).frames, 80U);
 }

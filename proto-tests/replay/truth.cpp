@@ -57,7 +57,7 @@ class NearGrid {
   }
   [[nodiscard]] bool any_near(const Eigen::Vector3d& p) const {
     for (int i = 0; i < 27; ++i) {
-      const Eigen::Vector3d offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      const Eigen::Vector3d offset = Eigen::Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).cast<double>();
       const auto cell = cells_.find(key_at(p + offset * kNearM, kNearM));
       if (cell == cells_.end()) continue;
       for (const auto& q : cell->second)

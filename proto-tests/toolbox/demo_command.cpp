@@ -1,8 +1,8 @@
 // A whole site in one terminal: simulated LiDARs and devices, the real server, a real client per device.
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <memory>
 #include <thread>
 
@@ -155,7 +155,7 @@ Status run_site(const DemoArguments& arguments, const fs::path& folder, bool& al
   if (!status) return status;
   Watch watch(**site, folder);
   status = watch_live(**site, *fleet, watch, arguments);
-  const Status stopped = fleet->stop();
+  Status stopped = fleet->stop();
   if (!status) return status;
   if (!stopped) return stopped;
   for (const std::string& line : summary_lines(watch.rows())) fmt::print("{}\n", line);

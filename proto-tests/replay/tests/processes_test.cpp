@@ -1,8 +1,8 @@
 #include "proto-tests/replay/processes.hpp"
 
 #include <gmock/gmock.h>
-#include <signal.h>
 
+#include <csignal>
 #include <thread>
 
 #include "proto-tests/replay/tests/temp_folder.hpp"

@@ -1,7 +1,7 @@
 // Real processes over DDS: what `liloc replay` and `liloc demo` start, they finish and end.
 #include <gmock/gmock.h>
-#include <signal.h>
 
+#include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>

@@ -2,126 +2,14 @@
 // stop.
 #include "client/include/liloc/client.hpp"
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 
-#include "client/src/session.hpp"
-#include "common/base/ids.hpp"
+#include "client/src/public_types.hpp"
 #include "common/base/log.hpp"
 #include "common/wire/client_link.hpp"
 
 namespace liloc::client {
 namespace {
-
-Pose to_public(const liloc::Pose& T) {
-  const Eigen::Vector3d t = T.translation();
-  const Eigen::Quaterniond q = Eigen::Quaterniond(T.linear()).normalized();
-  return {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}};
-}
-
-Result<liloc::Pose> to_domain(const Pose& T, std::string_view what) {
-  return valid_pose(Eigen::Vector3d(T.translation_m.data()), Eigen::Vector4d(T.rotation_xyzw.data()), what);
-}
-
-LocalMethod to_domain(Local local) {
-  switch (local) {
-    case Local::cloud:
-      return LocalMethod::cloud;
-    case Local::inertial:
-      return LocalMethod::inertial;
-    case Local::dead_reckoning:
-      return LocalMethod::dead_reckoning;
-  }
-  return LocalMethod::cloud;
-}
-
-State to_public(Tracking tracking) {
-  switch (tracking) {
-    case Tracking::searching:
-      return State::searching;
-    case Tracking::tracking:
-      return State::tracking;
-    case Tracking::coasting:
-      return State::coasting;
-  }
-  return State::searching;
-}
-
-Status check_ranges(const Options& o) {
-  if (!(o.min_range_m > 0) || !(o.max_range_m > o.min_range_m) || o.max_range_m > 100)
-    return fail("options.min_range_m..max_range_m is {}..{}; must rise within 0..100 m", o.min_range_m,
-                o.max_range_m);
-  if (!(o.voxel_size_m >= 0.01 && o.voxel_size_m <= 0.5))
-    return fail("options.voxel_size_m is {}; must be 0.01..0.5", o.voxel_size_m);
-  if (o.interval_ms < 50 || o.interval_ms > 60'000)
-    return fail("options.interval_ms is {}; must be 50..60000", o.interval_ms);
-  if (o.reply_timeout_ms < 100)
-    return fail("options.reply_timeout_ms is {}; must be 100 or more", o.reply_timeout_ms);
-  if (!(o.still_seconds >= 0 && o.still_seconds <= 600))
-    return fail("options.still_seconds is {}; must be 0..600", o.still_seconds);
-  if (o.local != Local::cloud && !o.T_imu_sensor)
-    return fail("options.local needs an IMU: set options.T_imu_sensor, or choose Local::cloud");
-  if (o.queue_frames < 1 || o.queue_frames > 100)
-    return fail("options.queue_frames is {}; must be 1..100", o.queue_frames);
-  return {};
-}
-
-Result<SessionOptions> to_session(const Options& o) {
-  SessionOptions s;
-  const auto id = valid_id(o.id, "options.id");
-  if (!id) return tl::unexpected(id.error());
-  if (const Status ok = check_ranges(o); !ok) return tl::unexpected(ok.error());
-  const liloc::Camera camera{o.camera.width, o.camera.height, o.camera.fx,           o.camera.fy,
-                             o.camera.cx,    o.camera.cy,     o.camera.depth_scale_m};
-  const auto valid_camera = camera.validated("options.camera");
-  if (!valid_camera) return tl::unexpected(valid_camera.error());
-  s.engine.client_id = *id;
-  s.engine.camera = *valid_camera;
-  s.engine.min_range_m = o.min_range_m;
-  s.engine.max_range_m = o.max_range_m;
-  s.engine.voxel_size_m = o.voxel_size_m;
-  s.engine.interval_ns = from_ms(o.interval_ms);
-  s.engine.reply_timeout_ns = from_ms(o.reply_timeout_ms);
-  s.engine.local = to_domain(o.local);
-  if (o.T_imu_sensor) {
-    const auto T = to_domain(*o.T_imu_sensor, "options.T_imu_sensor");
-    if (!T) return tl::unexpected(T.error());
-    s.engine.T_imu_sensor = *T;
-  }
-  s.engine.still_seconds = o.still_seconds;
-  s.engine.cold = o.cold;
-  s.engine.seed = o.seed;
-  s.queue_frames = o.queue_frames;
-  s.trace_folder = o.trace_folder;
-  return s;
-}
-
-PoseUpdate to_public(const FrameResult& frame, Tracking tracking, bool connected) {
-  PoseUpdate update;
-  update.stamp_ns = frame.stamp_ns;
-  if (frame.T_map_sensor) update.T_map_sensor = to_public(*frame.T_map_sensor);
-  update.T_odom_sensor = to_public(frame.T_odom_sensor);
-  update.odom_segment = frame.odom_segment;
-  update.informative = frame.informative;
-  update.converged = frame.converged;
-  update.state = to_public(tracking);
-  update.server_connected = connected;
-  return update;
-}
-
-Reply to_public(const SpotReply& reply) {
-  Reply r;
-  r.stamp_ns = reply.stamp_ns;
-  r.verified = reply.verified();
-  r.status = name_of(reply.status);
-  r.reason = name_of(reply.reason);
-  r.text = reply.text;
-  if (reply.T_map_sensor) r.T_map_sensor = to_public(*reply.T_map_sensor);
-  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(r.covariance.data()) = reply.covariance;
-  r.latency_ms = reply.latency_ms;
-  return r;
-}
 
 Outcome<Taken> to_public(const Status& status) {
   return status ? Outcome<Taken>(Taken{}) : Outcome<Taken>::failed(status.error().message);
@@ -253,11 +141,7 @@ PoseUpdate Client::newest() const {
 }
 
 Stats Client::stats() const {
-  const SessionStats s = impl_->session->stats();
-  return {s.frames,      s.frames_dropped,   s.frames_refused,  s.frames_uninformative,
-          s.imu_refused, s.requests,         s.requests_unsent, s.requests_unanswered,
-          s.replies,     s.replies_verified, s.replies_refused, s.frame_ms_median,
-          s.frame_ms_p99};
+  return to_public(impl_->session->stats());
 }
 
 Outcome<Taken> Client::stop() {

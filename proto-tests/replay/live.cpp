@@ -81,7 +81,6 @@ Status stream_all(const Recording& recording, const std::vector<Event>& events, 
 }  // namespace
 
 Result<RunFacts> run_live(const Recording& recording, const ReplayOptions& options, const Progress& progress) {
-  const Stopwatch watch;
   const std::vector<Event> events = timeline(recording);
   RunFacts facts;
   const auto domain = free_domain();
@@ -103,11 +102,7 @@ Result<RunFacts> run_live(const Recording& recording, const ReplayOptions& optio
   if (!status) return tl::unexpected(status.error());
   if (!stopped) return tl::unexpected(stopped.error());
 
-  facts.recording = recording.root.filename().string();
-  facts.mode = "dds";
-  facts.seed = options.seed;
-  facts.wall_s = watch.elapsed_ms() / 1e3;
-  facts.recorded_s = events.empty() ? 0 : to_seconds(events.back().stamp_ns - events.front().stamp_ns);
+  facts.recorded_s = recorded_seconds(events);
   return facts;
 }
 

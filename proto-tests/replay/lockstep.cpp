@@ -161,7 +161,6 @@ class Lockstep {
 
 Result<RunFacts> run_lockstep(const Recording& recording, const ReplayOptions& options,
                               const Progress& progress) {
-  const Stopwatch watch;
   const std::vector<Event> events = timeline(recording);
   FrameReader frames(recording, events);
   Lockstep lockstep(recording, options);
@@ -173,13 +172,8 @@ Result<RunFacts> run_lockstep(const Recording& recording, const ReplayOptions& o
   }
   if (auto status = lockstep.close(); !status) return tl::unexpected(status.error());
 
-  RunFacts facts = std::move(lockstep.facts);
-  facts.recording = recording.root.filename().string();
-  facts.mode = "lockstep";
-  facts.seed = options.seed;
-  facts.wall_s = watch.elapsed_ms() / 1e3;
-  facts.recorded_s = events.empty() ? 0 : to_seconds(events.back().stamp_ns - events.front().stamp_ns);
-  return facts;
+  lockstep.facts.recorded_s = recorded_seconds(events);
+  return std::move(lockstep.facts);
 }
 
 }  // namespace liloc::replay

@@ -18,11 +18,16 @@ tl::expected<Report, ReplayError> replay(const ReplayOptions& options, const Pro
   if (!recording) return ended(recording.error(), true);
   if (auto status = prepare_out(options.out); !status) return ended(status.error(), true);
 
+  const Stopwatch watch;
   Report report;
   auto run =
       options.lockstep ? run_lockstep(*recording, options, progress) : run_live(*recording, options, progress);
   if (!run) return ended(run.error(), false);
   report.run = std::move(*run);
+  report.run.recording = std::filesystem::weakly_canonical(options.recording).filename();
+  report.run.mode = options.lockstep ? "lockstep" : "dds";
+  report.run.seed = options.seed;
+  report.run.wall_s = watch.elapsed_ms() / 1e3;
   for (const DeviceRecording& device : recording->devices) {
     auto score = evaluate(*recording, device, trace_folder(options, device.info.id));
     if (!score) return ended(score.error(), false);

@@ -27,6 +27,10 @@ std::vector<Event> timeline(const Recording& recording) {
   return events;
 }
 
+double recorded_seconds(const std::vector<Event>& events) {
+  return events.empty() ? 0 : to_seconds(events.back().stamp_ns - events.front().stamp_ns);
+}
+
 FrameReader::FrameReader(const Recording& recording, const std::vector<Event>& events, std::size_t ahead)
     : recording_(recording),
       events_(events),

@@ -19,6 +19,8 @@ struct Event {
 };
 
 [[nodiscard]] std::vector<Event> timeline(const Recording& recording);
+/// From the first event to the last.
+[[nodiscard]] double recorded_seconds(const std::vector<Event>& events);
 
 /// Decodes the depth frames of a timeline a little ahead, on a thread of its own. `recording` and `events` must
 /// outlive it. `next` belongs to one thread.

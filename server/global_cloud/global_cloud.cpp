@@ -30,7 +30,9 @@ DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_s
 }  // namespace
 
 GlobalCloud::GlobalCloud(Site site, GlobalCloudOptions options)
-    : site_(std::move(site)), options_(options), frames_(site_.global_lidars.size()) {}
+    : site_(std::move(site)), options_(options), frames_(site_.global_lidars.size()) {
+  for (const GlobalLidar& lidar : site_.global_lidars) backgrounds_.emplace_back(lidar.camera, options_.background);
+}
 
 Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
   if (lidar >= site_.global_lidars.size()) return fail("LiDAR {} of {} does not exist", lidar, site_.global_lidars.size());
@@ -44,6 +46,7 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
     auto& frames = frames_[lidar];
     if (!frames.empty() && image.stamp_ns <= frames.back()->stamp_ns())
       return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns, frames.back()->stamp_ns());
+    if (options_.drop_moving) image = backgrounds_[lidar].without_moving(image);
     frames.push_back(std::make_shared<const LidarFrame>(std::move(image), info, options_.snapshot));
     const StampNs oldest = frames.back()->stamp_ns() - options_.keep_ns;
     while (frames.size() > options_.max_frames_per_lidar || frames.front()->stamp_ns() < oldest) frames.pop_front();

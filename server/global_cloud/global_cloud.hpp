@@ -10,12 +10,15 @@
 
 #include "common/geometry/camera.hpp"
 #include "common/geometry/depth.hpp"
+#include "server/global_cloud/background.hpp"
 #include "server/global_cloud/snapshot.hpp"
 
 namespace liloc {
 
 struct GlobalCloudOptions {
   SnapshotOptions snapshot;
+  BackgroundOptions background;
+  bool drop_moving = true;                ///< what moves is not map: it neither registers nor contradicts
   StampNs keep_ns = from_seconds(3.0);    ///< frames older than the newest by more than this are forgotten
   StampNs match_ns = from_ms(100.0);      ///< farther from a request than this is no GPC (paper, section 5.3)
   std::size_t max_frames_per_lidar = 128;  ///< a LiDAR that floods loses its oldest
@@ -52,7 +55,8 @@ class GlobalCloud {
   const GlobalCloudOptions options_;
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
-  std::vector<std::deque<Frame>> frames_;                       ///< per LiDAR, by rising stamp
+  std::vector<std::deque<Frame>> frames_;                  ///< per LiDAR, by rising stamp
+  std::vector<Background> backgrounds_;                    ///< per LiDAR
   std::deque<std::shared_ptr<const Snapshot>> snapshots_;       ///< built lately, newest last
 };
 

@@ -67,7 +67,8 @@ TEST(GlobalCloud, KeepsThreeSeconds) {
 
 TEST(GlobalCloud, StitchesInTheMapFrame) {
   Site site = two_lidars();
-  site.global_lidars[1].T_map_sensor.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  site.global_lidars[1].T_map_sensor.linear() =
+      Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
   GlobalCloud cloud(site, {});
   ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));
   ASSERT_TRUE(cloud.add_depth(1, wall(kT0)));

@@ -1,0 +1,64 @@
+#include "server/global_cloud/background.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace liloc {
+namespace {
+
+const Camera kCamera{40, 30, 30.0, 30.0, 19.5, 14.5, 0.001};
+constexpr StampNs kT0 = 1'700'000'000'000'000'000;
+
+/// A wall at 4 m and something 1.5 m before it in columns from..to.
+DepthImage with_visitor(double at_s, int from, int to) {
+  DepthImage image{kT0 + from_seconds(at_s), 40, 30, std::vector<std::uint16_t>(40 * 30, 4000)};
+  for (int v = 0; v < 30; ++v)
+    for (int u = from; u < to; ++u) image.units[static_cast<std::size_t>(v * 40 + u)] = 2500;
+  return image;
+}
+
+std::ptrdiff_t count(const DepthImage& image, std::uint16_t units) {
+  return std::count(image.units.begin(), image.units.end(), units);
+}
+
+TEST(Background, WhoWalksByIsTakenOutWithARim) {
+  Background background(kCamera, {});
+  EXPECT_EQ(count(background.without_moving(with_visitor(0, 0, 0)), 4000), 40 * 30);
+  for (int i = 1; i < 20; ++i) {
+    const DepthImage still = background.without_moving(with_visitor(0.15 * i, i, i + 6));
+    EXPECT_EQ(count(still, 2500), 0) << "frame " << i;
+    EXPECT_EQ(count(still, 0), 8 * 30) << "frame " << i;
+  }
+}
+
+TEST(Background, WhatStaysBecomesMapWithinSeconds) {
+  Background background(kCamera, {});
+  (void)background.without_moving(with_visitor(0, 0, 0));
+  for (int i = 1; i <= 18; ++i) {
+    const DepthImage still = background.without_moving(with_visitor(0.15 * i, 10, 16));
+    EXPECT_EQ(count(still, 2500), 0.15 * i < 2.2 ? 0 : 6 * 30) << "at " << 0.15 * i << " s";
+  }
+}
+
+TEST(Background, WhatLeavesUncoversMapAtOnce) {
+  Background background(kCamera, {});
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(count(background.without_moving(with_visitor(0.15 * i, 10, 16)), 0), 0);
+  EXPECT_EQ(count(background.without_moving(with_visitor(1, 0, 0)), 4000), 40 * 30);
+}
+
+TEST(Background, NoiseAndGapsMoveNothing) {
+  Background background(kCamera, {});
+  for (int i = 0; i < 20; ++i) {
+    DepthImage image = with_visitor(0.15 * i, 0, 0);
+    for (std::size_t p = 0; p < image.units.size(); ++p)
+      image.units[p] = (p * 7 + static_cast<std::size_t>(i)) % 11 == 0
+                           ? std::uint16_t{0}
+                           : static_cast<std::uint16_t>(4000 + (p * 31 + static_cast<std::size_t>(i) * 17) % 60);
+    const auto gaps = count(image, 0);
+    EXPECT_EQ(count(background.without_moving(image), 0), gaps);
+  }
+}
+
+}  // namespace
+}  // namespace liloc

@@ -1,6 +1,7 @@
 // The C API on top of the C++ one: checks what C cannot, keeps the order of calls, lets no exception out.
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <new>
 

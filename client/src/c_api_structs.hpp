@@ -1,7 +1,7 @@
 #pragma once
 // What crosses the C boundary, in both directions. Structures come with the caller's idea of their size.
+#include <algorithm>
 #include <cstring>
-#include <memory>
 
 #include "client/include/liloc/client.h"
 #include "client/include/liloc/client.hpp"
@@ -13,9 +13,11 @@ namespace liloc::client::c_api {
 template <class T>
 constexpr std::size_t kFirstSize = sizeof(T);
 
+constexpr std::size_t kLargestSize = 64 * 1024;  ///< no structure will ever be larger
+
 template <class T>
 Status check_size(std::size_t size, const char* name) {
-  if (size >= kFirstSize<T>) return {};
+  if (size >= kFirstSize<T> && size <= kLargestSize) return {};
   return fail("{} has {} bytes, this library knows {}; pass sizeof({})", name, size, sizeof(T), name);
 }
 

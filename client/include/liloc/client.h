@@ -11,9 +11,11 @@
  *     puts(liloc_client_last_error());
  *     return 1;
  *   }
- *   liloc_client_push_depth(client, units, 640, 480, stamp_ns);   // from the driver's callback: returns at
- * once liloc_pose_update now; if (!liloc_client_newest(client, &now, sizeof now) && now.has_map)
- * drive(&now.T_map_sensor); liloc_client_destroy(client);
+ *   liloc_pose_update now;
+ *   liloc_client_push_depth(client, units, 640, 480, stamp_ns);  // from the driver: returns at once
+ *   liloc_client_newest(client, &now, sizeof now);
+ *   if (now.has_map) drive(&now.T_map_sensor);
+ *   liloc_client_destroy(client);
  *
  * Metres and radians; stamps are nanoseconds of the device's clock. Optical frame: x right, y down, z forward.
  * Poses: p_to = T_to_from * p_from.

@@ -1,0 +1,36 @@
+# Tests of the C API, and of the package as a robot's project meets it: installed, moved, built against, run.
+# Each program that joins a DDS domain has its own, 171..177.
+liloc_test(NAME client_c_api SOURCES tests/c_api_test.cpp NEEDS liloc::client TIMEOUT 60)
+
+set(installed ${CMAKE_CURRENT_BINARY_DIR}/installed)
+set(consumer ${CMAKE_CURRENT_SOURCE_DIR}/tests/consumer)
+set(soname libliloc-client.so.${soversion})
+set(sanitize "")
+if(LILOC_SANITIZE)
+  set(sanitize -fsanitize=${LILOC_SANITIZE})
+endif()
+
+add_test(NAME client_install COMMAND ${CMAKE_COMMAND}
+  -DBUILD=${PROJECT_BINARY_DIR} -DSTAGE=${CMAKE_CURRENT_BINARY_DIR}/stage -DPREFIX=${installed}
+  -DLIBDIR=${CMAKE_INSTALL_LIBDIR} -DSONAME=${soname}
+  -P ${CMAKE_CURRENT_SOURCE_DIR}/tests/install_test.cmake)
+add_test(NAME client_install_symbols COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/tests/check_library.py
+  ${installed}/${CMAKE_INSTALL_LIBDIR}/${soname} ${installed}/include/liloc/client.h ${soname})
+add_test(NAME client_install_cmake COMMAND ${CMAKE_CTEST_COMMAND}
+  --build-and-test ${consumer} ${CMAKE_CURRENT_BINARY_DIR}/consumer_cmake --build-generator ${CMAKE_GENERATOR}
+  --build-options -DCMAKE_PREFIX_PATH=${installed} -DC_DOMAIN=171 -DCPP_DOMAIN=172
+    -DCMAKE_C_COMPILER=${CMAKE_C_COMPILER} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+    -DCMAKE_C_FLAGS=${sanitize} -DCMAKE_CXX_FLAGS=${sanitize}
+    -DCMAKE_DISABLE_FIND_PACKAGE_PCL=ON -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
+    -DCMAKE_DISABLE_FIND_PACKAGE_CycloneDDS=ON
+  --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure --no-tests=error)
+add_test(NAME client_install_pkg_config COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/tests/pkg_config_test.sh
+  ${installed}/${CMAKE_INSTALL_LIBDIR} ${CMAKE_CURRENT_BINARY_DIR}/consumer_pkg_config 173 174 ${sanitize})
+set_tests_properties(client_install_pkg_config PROPERTIES
+  ENVIRONMENT "CC=${CMAKE_C_COMPILER};CXX=${CMAKE_CXX_COMPILER}")
+
+set_tests_properties(client_install PROPERTIES FIXTURES_SETUP client_installed)
+set_tests_properties(client_install_symbols client_install_cmake client_install_pkg_config PROPERTIES
+  FIXTURES_REQUIRED client_installed)
+set_tests_properties(client_install client_install_symbols client_install_cmake client_install_pkg_config PROPERTIES
+  TIMEOUT 60)

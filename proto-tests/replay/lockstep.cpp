@@ -15,7 +15,7 @@
 namespace liloc::replay {
 namespace {
 
-constexpr StampNs kHold_ns = from_ms(100);  // the farthest a ceiling frame may be from its request
+constexpr StampNs kHold_ns = from_ms(100);  // longest wait for the ceiling; the server's --hold-ms
 
 struct Device {
   explicit Device(EngineOptions options) : engine(std::move(options)) {}
@@ -136,13 +136,15 @@ class Lockstep {
 
   /// Answers what need not or must not wait longer, at recorded time `now_ns`.
   void answer_due(StampNs now_ns) {
-    const StampNs seen_by_all_ns =
-        newest_ceiling_ns_.empty() ? std::numeric_limits<StampNs>::max()
-                                   : *std::min_element(newest_ceiling_ns_.begin(), newest_ceiling_ns_.end());
+    const auto oldest = std::min_element(newest_ceiling_ns_.begin(), newest_ceiling_ns_.end());
+    // As in the server: a LiDAR whose last frame still counts for the stamp need not show a newer one.
+    const auto all_seen = [&](StampNs stamp_ns) {
+      return oldest == newest_ceiling_ns_.end() || *oldest >= stamp_ns - GlobalCloudOptions{}.match_ns;
+    };
     for (auto& device : devices_)
       while (!device->held.empty()) {
         const SpotRequest& request = device->held.front();
-        if (seen_by_all_ns < request.stamp_ns && now_ns < request.stamp_ns + kHold_ns) break;
+        if (!all_seen(request.stamp_ns) && now_ns < request.stamp_ns + kHold_ns) break;
         const SpotReply reply = localizer_.locate(request);
         device->engine.add_reply(reply);
         device->trace.on_reply(reply, request);

@@ -1,0 +1,32 @@
+#pragma once
+// NumPy arrays on one side, the public API's plain structs on the other.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "client/include/liloc/client.hpp"
+
+namespace liloc::client::python {
+
+namespace py = pybind11;
+
+/// 4x4 float64 matrix, p_to = T * p_from. The other way raises ValueError unless it is a rotation and a
+/// translation; `what` names it.
+[[nodiscard]] py::array_t<double> to_matrix(const Pose& pose);
+[[nodiscard]] Pose from_matrix(const py::object& matrix, const char* what);
+
+using DepthArray = py::array_t<std::uint16_t, py::array::c_style>;
+/// uint16 of HxW, copied only when it is not contiguous. Raises TypeError for another type: metres as float
+/// would become garbage silently.
+[[nodiscard]] DepthArray depth_of(const py::object& depth);
+
+struct Imu {
+  std::int64_t stamp_ns = 0;
+  std::array<double, 3> angular_velocity_rad_s{}, specific_force_m_s2{};
+};
+/// One stamp and six values, or N integer stamps and Nx6.
+[[nodiscard]] std::vector<Imu> imu_of(const py::object& stamps_ns, const py::object& samples);
+
+}  // namespace liloc::client::python

@@ -1,0 +1,173 @@
+"""Threads: every call is safe from any thread, and those that wait do so without the GIL. Callbacks run on the
+client's own threads with the GIL: on_pose on the registration thread for every processed frame (a slow one delays
+the next frame), on_reply on the network thread. What a callback raises goes to sys.unraisablehook."""
+from collections.abc import Callable, Sequence
+from types import TracebackType
+from typing import ClassVar, Literal, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["Camera", "Client", "Error", "PoseUpdate", "Reply", "State", "Stats", "__version__", "set_log"]
+__version__: str
+
+class Error(RuntimeError):
+    """The network, the file system, or a client that was stopped; the text says how to mend it."""
+
+class Camera:
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    depth_scale_m: float  # metres per unit of a depth image
+    def __init__(
+        self, width: int, height: int, fx: float, fy: float, cx: float, cy: float, depth_scale_m: float = 0.001
+    ) -> None: ...
+
+class State:
+    """SEARCHING: never located. TRACKING: located, the server answers. COASTING: located once, and carried on by
+    the device alone."""
+
+    SEARCHING: ClassVar[State]
+    TRACKING: ClassVar[State]
+    COASTING: ClassVar[State]
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class PoseUpdate:
+    @property
+    def stamp_ns(self) -> int:
+        """Of the frame; 0 before the first."""
+    @property
+    def T_map_sensor(self) -> Optional[npt.NDArray[np.float64]]:
+        """4x4; None until an answer was verified."""
+    @property
+    def T_odom_sensor(self) -> npt.NDArray[np.float64]:
+        """4x4; smooth, never jumps by a correction."""
+    @property
+    def odom_segment(self) -> int:
+        """Rises when the odometry broke."""
+    @property
+    def informative(self) -> bool:
+        """The frame showed enough to be matched."""
+    @property
+    def converged(self) -> bool:
+        """Its pose was measured, not guessed."""
+    @property
+    def state(self) -> State: ...
+    @property
+    def server_connected(self) -> bool: ...
+
+class Reply:
+    @property
+    def stamp_ns(self) -> int:
+        """Of the frame that was asked about."""
+    @property
+    def verified(self) -> bool: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def text(self) -> str:
+        """For people."""
+    @property
+    def T_map_sensor(self) -> Optional[npt.NDArray[np.float64]]:
+        """4x4; the server's own best answer for that frame."""
+    @property
+    def covariance(self) -> npt.NDArray[np.float64]:
+        """6x6 of T_map_sensor, sensor frame, [rad; m]."""
+    @property
+    def latency_ms(self) -> float:
+        """On the server."""
+
+class Stats:
+    @property
+    def frames(self) -> int:
+        """Processed."""
+    @property
+    def frames_dropped(self) -> int:
+        """The queue was full."""
+    @property
+    def frames_refused(self) -> int:
+        """Wrong size, or a stamp that was not newer."""
+    @property
+    def frames_uninformative(self) -> int: ...
+    @property
+    def imu_refused(self) -> int: ...
+    @property
+    def requests(self) -> int: ...
+    @property
+    def requests_unsent(self) -> int: ...
+    @property
+    def requests_unanswered(self) -> int: ...
+    @property
+    def replies(self) -> int: ...
+    @property
+    def replies_verified(self) -> int: ...
+    @property
+    def replies_refused(self) -> int: ...
+    @property
+    def frame_ms_median(self) -> float:
+        """Over the last 512 frames."""
+    @property
+    def frame_ms_p99(self) -> float: ...
+
+class Client:
+    """Runs from its making to stop(), the end of its `with` block, or the end of the program."""
+
+    def __init__(
+        self,
+        id: str,
+        camera: Camera,
+        *,
+        domain: int = 0,
+        network_interface: str = "lo",
+        peers: Sequence[str] = ...,
+        min_range_m: float = 0.25,
+        max_range_m: float = 8.5,
+        voxel_size_m: float = 0.05,
+        interval_ms: int = 800,
+        reply_timeout_ms: int = 4000,
+        local: Literal["cloud", "inertial", "dead_reckoning"] = "cloud",
+        T_imu_sensor: Optional[npt.ArrayLike] = None,
+        still_seconds: float = 0.0,
+        cold: bool = False,
+        seed: int = 1,
+        queue_frames: int = 4,
+        trace_folder: str = "",
+        on_pose: Optional[Callable[[PoseUpdate], object]] = None,
+        on_reply: Optional[Callable[[Reply], object]] = None,
+    ) -> None:
+        """Options as in liloc/client.hpp; T_imu_sensor is 4x4, and there is an IMU exactly where it is given.
+        Raises ValueError for an option out of its range, Error when the network says no. A server that is not there
+        is no error: the client waits for it."""
+    def push_depth(self, depth: npt.NDArray[np.uint16], stamp_ns: int) -> None:
+        """z-depth, height x width, 0 = no return; copied. A full queue drops its oldest frame. Raises TypeError for
+        another dtype, ValueError for another size than the camera's, Error after stop."""
+    def push_imu(self, stamps_ns: Union[int, npt.NDArray[np.int64]], samples: npt.ArrayLike) -> None:
+        """One stamp and six values, or N stamps and N x 6: wx wy wz (rad/s), ax ay az (m/s^2), IMU axes; at rest the
+        latter read +g upwards. Raises ValueError for wrong shapes, or without T_imu_sensor."""
+    def newest(self) -> PoseUpdate:
+        """Of the newest processed frame."""
+    def wait(self, newer_than_ns: int = 0, timeout_s: float = 1.0) -> Optional[PoseUpdate]:
+        """The newest pose once its stamp is newer than that; None when the time is over."""
+    def stats(self) -> Stats: ...
+    def stop(self) -> None:
+        """Takes no more frames, finishes those that wait, writes the trace. A second stop does nothing. Raises Error
+        for the trace's error, and inside a callback."""
+    def __enter__(self) -> Client: ...
+    def __exit__(
+        self,
+        kind: Optional[type[BaseException]],
+        error: Optional[BaseException],
+        traceback: Optional[TracebackType],
+    ) -> None: ...
+
+def set_log(callback: Optional[Callable[[int, str], object]]) -> None:
+    """Called for every line of the log, on any thread; level 0 debug, 1 info, 2 warning, 3 error. None: nowhere, as at
+    the start. Process-wide."""

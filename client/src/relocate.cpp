@@ -47,7 +47,7 @@ std::vector<ScanMatch> relocate(const LocalMap& map, const std::vector<Surfel>& 
   search.propose = kProposals;
   search.seed = seed;
   std::vector<ScanMatch> matches;
-  for (const Candidate& candidate : feature_search(target, describe(target.cloud, describe_options), query,
+  for (const Candidate& candidate : feature_search(target, describe(target->cloud, describe_options), query,
                                                    describe(query.cloud, describe_options), search)) {
     const auto match = match_scan(map, frame, {candidate.T_map_sensor, kStartSdRad, kStartSdM}, now_ns);
     if (match && match->settled) matches.push_back(*match);

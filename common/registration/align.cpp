@@ -50,7 +50,7 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
     return fail("target has {} usable points at a voxel of {} m; at least {} are needed", thin.size(), voxel,
                 kFewestPoints);
   const Target room = make_target(std::move(thin), {}, voxel);
-  const Described room_described = describe(room.coarse, {10 * voxel, 1.0, options.seed});
+  const Described room_described = describe(room->coarse, {10 * voxel, 1.0, options.seed});
   const Described query_described = describe(query.medium, {10 * voxel, 1.0, options.seed});
   SpotProblem problem{room, query, std::nullopt, std::nullopt, [&]() -> const Described& { return room_described; },
                       [&]() -> const Described& { return query_described; }, options.seed, options.threads};

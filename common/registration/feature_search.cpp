@@ -155,7 +155,7 @@ std::vector<Candidate> feature_search(const Target& target, const Described& tar
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < cells.size(); i = next++)
-      found[i] = ransac(target.field_fine(), query.sparse.points,
+      found[i] = ransac(target->field_fine(), query.sparse.points,
                         match_features(query_described, target_described, cells[i]), iterations,
                         static_cast<float>(options.edge_ratio), options.seed * 1000003 + i);
   };

@@ -183,7 +183,7 @@ std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distan
 
 std::vector<Candidate> gravity_search(const Target& target, const Query& query, const Eigen::Vector3d& up_sensor,
                                       const GravitySearchOptions& options) {
-  const ScoreField& coarse = target.field_coarse();
+  const ScoreField& coarse = target->field_coarse();
   if (coarse.empty() || query.sparse.empty()) return {};
   const auto deadline = std::chrono::steady_clock::now() + options.time_limit;
   const Eigen::Matrix3d R_level_sensor =
@@ -218,7 +218,7 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query, 
   if (cells.size() > kFirstPass * options.keep) cells.resize(kFirstPass * options.keep);
 
   std::vector<Start> starts;
-  const Climber second{coarse, level_points}, third{target.field_fine(), every_nth(level_points, 2)};
+  const Climber second{coarse, level_points}, third{target->field_fine(), every_nth(level_points, 2)};
   for (const Cell& cell : cells) {
     const Eigen::Vector3d position =
         coarse.origin().cast<double>() +

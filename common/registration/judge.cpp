@@ -28,7 +28,7 @@ Counts device_against_ceiling(const Target& target, const Cloud& points, const E
   for (const Eigen::Vector3f& point : points.points) {
     const Eigen::Vector3f p = T * point;
     if (target.views.empty()) {
-      const std::int32_t j = target.nearest.nearest(p);
+      const std::int32_t j = target->nearest.nearest(p);
       counts.agree += j != NearestGrid::kNone;
       continue;
     }
@@ -42,8 +42,8 @@ Counts device_against_ceiling(const Target& target, const Cloud& points, const E
 Counts ceiling_against_device(const Target& target, const SightView& view, const Eigen::Isometry3f& T_sensor_map,
                               float tolerance, std::size_t stride) {
   Counts counts;
-  for (std::size_t i = 0; i < target.coarse.size(); i += stride) {
-    const Sight sight = view.look_sensor(T_sensor_map * target.coarse.points[i], tolerance);
+  for (std::size_t i = 0; i < target->coarse.size(); i += stride) {
+    const Sight sight = view.look_sensor(T_sensor_map * target->coarse.points[i], tolerance);
     counts.agree += sight == Sight::agrees;
     counts.conflict += sight == Sight::conflict;
   }

@@ -119,9 +119,9 @@ Fit fit_of(const Target& target, const Cloud& cloud_source, const Pose& T_target
   double squared_sum = 0;
   for (const auto& point : cloud_source.points) {
     const Eigen::Vector3f p = T * point;
-    const std::int32_t j = target.nearest.nearest(p);
+    const std::int32_t j = target->nearest.nearest(p);
     if (j == NearestGrid::kNone) continue;
-    const float squared = (p - target.cloud.points[static_cast<std::size_t>(j)]).squaredNorm();
+    const float squared = (p - target->cloud.points[static_cast<std::size_t>(j)]).squaredNorm();
     if (squared > distance_m * distance_m) continue;
     ++near;
     squared_sum += static_cast<double>(squared);
@@ -136,11 +136,11 @@ Alignment refine(const Target& target, const Query& query, const Pose& T_target_
   Alignment result;
   Pose T = T_target_source_guess;
   const double middle_m = std::min(options.start_distance_m, 2 * options.end_distance_m);
-  iterate({target.coarse, target.nearest_coarse, query.sparse}, options.sparse_iterations, options.start_distance_m,
+  iterate({target->coarse, target->nearest_coarse, query.sparse}, options.sparse_iterations, options.start_distance_m,
           middle_m, options, prior, &T);
-  iterate({target.coarse, target.nearest_coarse, query.medium}, options.coarse_iterations, middle_m, middle_m, options,
+  iterate({target->coarse, target->nearest_coarse, query.medium}, options.coarse_iterations, middle_m, middle_m, options,
           prior, &T);
-  const Side fine{target.cloud, target.nearest, query.medium};
+  const Side fine{target->cloud, target->nearest, query.medium};
   result.converged = iterate(fine, options.fine_iterations, middle_m, options.end_distance_m, options, prior, &T);
   result.T_target_source = normalized(T);
 

@@ -32,22 +32,33 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
 
 }  // namespace
 
-const Target::Fields& Target::fields() const {
-  std::call_once(fields_->once, [this] {
-    fields_->coarse = ScoreField(coarse, views, kCoarseField_m, 0.13);
-    fields_->fine = ScoreField(coarse, views, kFineField_m, 0.08);
+Surfaces::Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m)
+    : cloud(std::move(cloud_map)),
+      coarse(voxel_downsample(cloud, 2 * voxel_size_m)),
+      nearest(cloud.points, voxel_size_m, 1.6 * voxel_size_m),
+      nearest_coarse(coarse.points, 3 * voxel_size_m, 0.32),
+      views_(std::move(views)) {}
+
+void Surfaces::build_fields() const {
+  std::call_once(once_, [this] {
+    field_coarse_ = ScoreField(coarse, views_, kCoarseField_m, 0.13);
+    field_fine_ = ScoreField(coarse, views_, kFineField_m, 0.08);
   });
-  return *fields_;
+}
+
+const ScoreField& Surfaces::field_coarse() const {
+  build_fields();
+  return field_coarse_;
+}
+
+const ScoreField& Surfaces::field_fine() const {
+  build_fields();
+  return field_fine_;
 }
 
 Target make_target(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m) {
-  Target target;
-  target.cloud = std::move(cloud_map);
-  target.views = std::move(views);
-  target.coarse = voxel_downsample(target.cloud, 2 * voxel_size_m);
-  target.nearest = NearestGrid(target.cloud.points, voxel_size_m, 1.6 * voxel_size_m);
-  target.nearest_coarse = NearestGrid(target.coarse.points, 3 * voxel_size_m, 0.32);
-  return target;
+  auto surfaces = std::make_shared<const Surfaces>(std::move(cloud_map), views, voxel_size_m);
+  return {std::move(surfaces), std::move(views)};
 }
 
 Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options) {

@@ -11,27 +11,38 @@
 
 namespace liloc {
 
-/// The room: cloud and views in the map frame. Immutable once made; any thread may read it.
-class Target {
+/// The surfaces of a room in the map frame, and indices over them. Immutable; any thread may read it.
+class Surfaces {
  public:
-  Cloud cloud;   ///< one point per voxel, normals towards the sensor that saw it
-  Cloud coarse;  ///< the same at twice the voxel size
-  NearestGrid nearest, nearest_coarse;
-  std::vector<SightView> views;  ///< the ceiling's; empty when two bare clouds are aligned
+  /// `cloud_map`: one point per voxel, normals towards the sensor that saw it. `views`: through which lines of
+  /// sight space is known to be empty.
+  Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m);
+
+  const Cloud cloud;
+  const Cloud coarse;  ///< at twice the voxel size
+  const NearestGrid nearest, nearest_coarse;
 
   /// What a device point is worth at each place, at 0.2 m and at 0.1 m: for searches. The first caller builds them.
-  [[nodiscard]] const ScoreField& field_coarse() const { return fields().coarse; }
-  [[nodiscard]] const ScoreField& field_fine() const { return fields().fine; }
+  [[nodiscard]] const ScoreField& field_coarse() const;
+  [[nodiscard]] const ScoreField& field_fine() const;
 
  private:
-  struct Fields {
-    std::once_flag once;
-    ScoreField coarse, fine;
-  };
-  [[nodiscard]] const Fields& fields() const;
-  std::unique_ptr<Fields> fields_ = std::make_unique<Fields>();
+  void build_fields() const;
+
+  const std::vector<SightView> views_;
+  mutable std::once_flag once_;
+  mutable ScoreField field_coarse_, field_fine_;
 };
 
+/// What a spot is registered against: surfaces, which many moments share, and what the ceiling sees right now.
+struct Target {
+  std::shared_ptr<const Surfaces> surfaces;
+  std::vector<SightView> views;  ///< empty when two bare clouds are aligned
+
+  [[nodiscard]] const Surfaces* operator->() const { return surfaces.get(); }
+};
+
+/// Both from one moment.
 [[nodiscard]] Target make_target(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m);
 
 /// The device's cloud in its sensor frame.

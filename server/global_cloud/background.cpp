@@ -1,47 +1,89 @@
 #include "server/global_cloud/background.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace liloc {
 
 Background::Background(const Camera& camera, const BackgroundOptions& options)
     : options_(options),
+      width_(camera.width),
+      height_(camera.height),
       scale_m_(camera.depth_scale_m),
       pixels_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)) {}
 
-bool Background::moving(Pixel* pixel, std::uint16_t units, float now_s) const {
-  const int tolerance = static_cast<int>(options_.tolerance_m / scale_m_ + 0.01 * units);
-  const int nearer = static_cast<int>(pixel->surface) - units;
-  if (nearer <= tolerance) {  // the known surface, or one behind it that was hidden so far
-    pixel->surface = nearer < -tolerance ? units : static_cast<std::uint16_t>((3 * pixel->surface + units) / 4);
-    pixel->candidate = 0;
+void Background::replace(Pixel* pixel, float units) {
+  pixel->surface = units;
+  pixel->averaged = 1;
+  pixel->candidates = 0;
+  ++replaced_;
+}
+
+bool Background::moving(Pixel* pixel, float units, float now_s) {
+  const float tolerance = static_cast<float>(options_.tolerance_m / scale_m_) + 0.01F * units;
+  const float nearer = pixel->surface - units;
+  pixel->missing_since_s = -1;
+  if (pixel->surface > 0 && std::abs(nearer) <= tolerance) {
+    if (pixel->averaged < options_.most_averaged) ++pixel->averaged;
+    pixel->surface -= nearer / static_cast<float>(pixel->averaged);
+    pixel->candidates = 0;
     return false;
   }
-  if (pixel->candidate == 0 || std::abs(static_cast<int>(pixel->candidate) - units) > tolerance) {
+  if (pixel->candidates == 0 || std::abs(pixel->candidate - units) > tolerance) {
     pixel->candidate = units;
     pixel->candidate_since_s = now_s;
+    pixel->candidates = 0;
   }
-  if (now_s - pixel->candidate_since_s < static_cast<float>(options_.settle_seconds)) return true;
-  pixel->surface = units;
-  pixel->candidate = 0;
+  if (pixel->candidates < 255) ++pixel->candidates;
+  const bool gone = pixel->surface > 0 && nearer < 0 && pixel->candidates >= 2;
+  const bool settled = now_s - pixel->candidate_since_s >= static_cast<float>(options_.settle_seconds);
+  if (!gone && !settled) return true;
+  replace(pixel, units);
   return false;
 }
 
-DepthImage Background::without_moving(const DepthImage& image) {
-  if (first_ns_ == 0) first_ns_ = image.stamp_ns;
+void Background::miss(Pixel* pixel, float now_s) {
+  if (pixel->surface == 0) return;
+  if (pixel->missing_since_s < 0) pixel->missing_since_s = now_s;
+  if (now_s - pixel->missing_since_s >= static_cast<float>(options_.forget_seconds)) replace(pixel, 0);
+}
+
+DepthImage Background::learn(const DepthImage& image) {
+  const bool first = first_ns_ == 0;
+  if (first) first_ns_ = image.stamp_ns;
+  last_ns_ = image.stamp_ns;
+  ++frames_;
   const auto now_s = static_cast<float>(to_seconds(image.stamp_ns - first_ns_));
   DepthImage still = image;
-  const int width = image.width, height = image.height;
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    if (image.units[i] == 0) continue;
-    if (pixels_[i].surface == 0) pixels_[i].surface = image.units[i];
+    if (image.units[i] == 0) {
+      miss(&pixels_[i], now_s);
+      continue;
+    }
+    if (first) replace(&pixels_[i], image.units[i]);
     if (!moving(&pixels_[i], image.units[i], now_s)) continue;
-    const int u = static_cast<int>(i) % width, v = static_cast<int>(i) / width;
-    for (int y = std::max(0, v - 1); y <= std::min(height - 1, v + 1); ++y)
-      for (int x = std::max(0, u - 1); x <= std::min(width - 1, u + 1); ++x)
-        still.units[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = 0;
+    const int u = static_cast<int>(i) % width_, v = static_cast<int>(i) / width_;
+    for (int y = std::max(0, v - 1); y <= std::min(height_ - 1, v + 1); ++y)
+      for (int x = std::max(0, u - 1); x <= std::min(width_ - 1, u + 1); ++x)
+        still.units[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)] = 0;
   }
   return still;
+}
+
+bool Background::changed() const {
+  const double share = static_cast<double>(replaced_) / static_cast<double>(pixels_.size());
+  const bool gained = frames_ == 3 || frames_ == 10 || frames_ == 30;
+  return gained || share > options_.fresh_share ||
+         (share > options_.late_share && to_seconds(last_ns_ - derived_ns_) > options_.refresh_seconds);
+}
+
+DepthImage Background::surfaces() {
+  replaced_ = 0;
+  derived_ns_ = last_ns_;
+  DepthImage image{last_ns_, width_, height_, {}};
+  image.units.reserve(pixels_.size());
+  for (const Pixel& pixel : pixels_) image.units.push_back(static_cast<std::uint16_t>(pixel.surface + 0.5F));
+  return image;
 }
 
 }  // namespace liloc

@@ -7,31 +7,49 @@
 namespace liloc {
 
 struct BackgroundOptions {
-  double settle_seconds = 2.0;  ///< what stands still for so long is part of the room (again)
-  double tolerance_m = 0.06;    ///< depths this close, plus 1 % of the depth, are the same surface
+  double settle_seconds = 2.0;   ///< what stands still for so long is part of the room (again)
+  double tolerance_m = 0.06;     ///< depths this close, plus 1 % of the depth, are the same surface
+  double forget_seconds = 1.0;   ///< a surface without any return for so long is forgotten
+  int most_averaged = 12;        ///< frames in a pixel's running mean
+  double fresh_share = 0.004;    ///< so much of the image changed: the room is to be derived anew ...
+  double late_share = 0.0005;    ///< ... or so much of it, ...
+  double refresh_seconds = 4.0;  ///< ... once so long has passed
 };
 
-/// What moves before a ceiling LiDAR. The LiDAR stands still, so each pixel has a history of its own: a return
-/// nearer than the surface behind it belongs to something that came by, until it has stood there for a while; a
-/// farther one shows that the old surface is gone. Not thread-safe.
+/// The room before one ceiling LiDAR without what moves. The LiDAR stands still, so each pixel has a history of its
+/// own: a return nearer than its surface, or where there was none, belongs to something that came by, until it has stood
+/// there for a while; two farther ones show that the old surface is gone. Surfaces are running means, so their noise shrinks with time. Not
+/// thread-safe.
 class Background {
  public:
   Background(const Camera& camera, const BackgroundOptions& options);
 
-  /// Learns from the next frame (rising stamps) and returns it with everything that moves taken out (0), and a rim
-  /// of one pixel around it. The image has the camera's size.
-  [[nodiscard]] DepthImage without_moving(const DepthImage& image);
+  /// Learns from the next frame (rising stamps, the camera's size) and returns it with everything that moves taken
+  /// out (0), and a rim of one pixel around it.
+  [[nodiscard]] DepthImage learn(const DepthImage& image);
+
+  /// Whether the surfaces have changed enough since the last call of `surfaces` to derive the room anew.
+  /// Also after the 3rd, 10th and 30th frame, for what the means have gained.
+  [[nodiscard]] bool changed() const;
+  /// The surfaces as a depth image, stamped by the last frame.
+  [[nodiscard]] DepthImage surfaces();
 
  private:
   struct Pixel {
-    std::uint16_t surface = 0, candidate = 0;  ///< units; 0: not seen yet
-    float candidate_since_s = 0;
+    float surface = 0, candidate = 0;  ///< units; 0: not seen yet
+    float candidate_since_s = 0, missing_since_s = -1;  ///< -1: not missing
+    std::uint8_t averaged = 0, candidates = 0;
   };
-  [[nodiscard]] bool moving(Pixel* pixel, std::uint16_t units, float now_s) const;
+  [[nodiscard]] bool moving(Pixel* pixel, float units, float now_s);
+  void miss(Pixel* pixel, float now_s);
+  void replace(Pixel* pixel, float units);
 
   const BackgroundOptions options_;
+  const int width_, height_;
   const double scale_m_;
-  StampNs first_ns_ = 0;
+  StampNs first_ns_ = 0, last_ns_ = 0, derived_ns_ = 0;
+  std::size_t replaced_ = 0;  ///< pixels, since the surfaces were last asked for
+  int frames_ = 0;
   std::vector<Pixel> pixels_;
 };
 

@@ -7,7 +7,7 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kSnapshotsKept = 4;  // clients of one moment share one; an index of a room is some 20 MB
+constexpr std::size_t kSnapshotsKept = 6, kRoomsKept = 3;  // a room's indices are some 20 MB, a snapshot 1 MB
 
 StampNs gap(StampNs a, StampNs b) { return a > b ? a - b : b - a; }
 
@@ -31,7 +31,7 @@ DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_s
 
 GlobalCloud::GlobalCloud(Site site, GlobalCloudOptions options)
     : site_(std::move(site)), options_(options), frames_(site_.global_lidars.size()) {
-  for (const GlobalLidar& lidar : site_.global_lidars) backgrounds_.emplace_back(lidar.camera, options_.background);
+  for (const GlobalLidar& lidar : site_.global_lidars) watches_.push_back({Background(lidar.camera, options_.background), nullptr});
 }
 
 Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
@@ -46,13 +46,35 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
     auto& frames = frames_[lidar];
     if (!frames.empty() && image.stamp_ns <= frames.back()->stamp_ns())
       return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns, frames.back()->stamp_ns());
-    if (options_.drop_moving) image = backgrounds_[lidar].without_moving(image);
-    frames.push_back(std::make_shared<const LidarFrame>(std::move(image), info, options_.snapshot));
+    frames.push_back(watched(lidar, std::move(image)));
     const StampNs oldest = frames.back()->stamp_ns() - options_.keep_ns;
     while (frames.size() > options_.max_frames_per_lidar || frames.front()->stamp_ns() < oldest) frames.pop_front();
   }
   arrived_.notify_all();
   return {};
+}
+
+GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
+  const GlobalLidar& info = site_.global_lidars[lidar];
+  auto& [background, surfaces] = watches_[lidar];
+  if (!options_.drop_moving) {
+    surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);
+  } else {
+    image = background.learn(image);
+    if (!surfaces || background.changed())
+      surfaces = std::make_shared<const LidarSurfaces>(background.surfaces(), info, options_.snapshot);
+  }
+  return std::make_shared<const LidarFrame>(std::move(image), surfaces, info, options_.snapshot);
+}
+
+std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame>& frames) {
+  StitchedRoom::Parts parts;
+  for (const Frame& frame : frames) parts.push_back(frame->surfaces());
+  for (const auto& room : rooms_)
+    if (room->parts() == parts) return room;
+  rooms_.push_back(std::make_shared<const StitchedRoom>(std::move(parts), options_.snapshot));
+  if (rooms_.size() > kRoomsKept) rooms_.pop_front();
+  return rooms_.back();
 }
 
 Status GlobalCloud::add_points(std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor) {
@@ -87,7 +109,8 @@ Result<std::shared_ptr<const Snapshot>> GlobalCloud::nearest(StampNs stamp_ns) {
                               to_ms(options_.match_ns), to_ms(newest - stamp_ns));
   const auto known = std::find_if(snapshots_.begin(), snapshots_.end(), [&](const auto& s) { return s->frames() == frames; });
   if (known != snapshots_.end()) return *known;
-  snapshots_.push_back(std::make_shared<const Snapshot>(snapshot_stamp, std::move(frames), options_.snapshot));
+  const auto room = room_of(frames);
+  snapshots_.push_back(std::make_shared<const Snapshot>(snapshot_stamp, std::move(frames), room));
   if (snapshots_.size() > kSnapshotsKept) snapshots_.pop_front();
   return snapshots_.back();
 }

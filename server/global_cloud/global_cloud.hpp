@@ -48,6 +48,13 @@ class GlobalCloud {
  private:
   using Frame = std::shared_ptr<const LidarFrame>;
 
+  /// What stands still before each LiDAR, and the surfaces derived from it last.
+  struct Watch {
+    Background background;
+    std::shared_ptr<const LidarSurfaces> surfaces;
+  };
+  [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);  ///< mutex_ held
+  [[nodiscard]] std::shared_ptr<const StitchedRoom> room_of(const std::vector<Frame>& frames);  ///< mutex_ held
   [[nodiscard]] Frame nearest_frame(std::size_t lidar, StampNs stamp_ns) const;  ///< null: none; mutex_ held
   [[nodiscard]] bool settled(StampNs stamp_ns) const;                            ///< mutex_ held
 
@@ -56,8 +63,9 @@ class GlobalCloud {
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
   std::vector<std::deque<Frame>> frames_;                  ///< per LiDAR, by rising stamp
-  std::vector<Background> backgrounds_;                    ///< per LiDAR
-  std::deque<std::shared_ptr<const Snapshot>> snapshots_;       ///< built lately, newest last
+  std::vector<Watch> watches_;                             ///< per LiDAR
+  std::deque<std::shared_ptr<const Snapshot>> snapshots_;  ///< asked for lately, newest last
+  std::deque<std::shared_ptr<const StitchedRoom>> rooms_;  ///< of them
 };
 
 }  // namespace liloc

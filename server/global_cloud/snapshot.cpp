@@ -5,53 +5,67 @@
 #include "common/registration/normals.hpp"
 
 namespace liloc {
+namespace {
 
-LidarFrame::LidarFrame(DepthImage image, const GlobalLidar& lidar, const SnapshotOptions& options)
-    : image_(std::move(image)), lidar_(lidar), options_(options) {}
-
-void LidarFrame::derive() const {
-  view_ = SightView::from_depth(image_, lidar_.camera, lidar_.T_map_sensor.inverse(), options_.view_factor,
-                                options_.depth.max_range_m);
-  const auto cloud_sensor = depth_to_cloud(image_, lidar_.camera, options_.depth);
-  if (!cloud_sensor) return log::error("{}: {}", lidar_.id, cloud_sensor.error().message);
-  const Cloud thin = with_normals(voxel_downsample(*cloud_sensor, options_.voxel_size_m), Eigen::Vector3f::Zero(),
-                                  {2.5 * options_.voxel_size_m, 5});
-  cloud_map_ = transformed(lidar_.T_map_sensor, thin);
+SightView view_of(const DepthImage& image, const GlobalLidar& lidar, const SnapshotOptions& options) {
+  return SightView::from_depth(image, lidar.camera, lidar.T_map_sensor.inverse(), options.view_factor,
+                               options.depth.max_range_m);
 }
 
-const Cloud& LidarFrame::cloud_map() const {
-  std::call_once(once_, [this] { derive(); });
+}  // namespace
+
+LidarSurfaces::LidarSurfaces(DepthImage image, const GlobalLidar& lidar, const SnapshotOptions& options)
+    : image_(std::move(image)), lidar_(lidar), options_(options) {}
+
+const Cloud& LidarSurfaces::cloud_map() const {
+  std::call_once(once_, [this] {
+    const auto cloud_sensor = depth_to_cloud(image_, lidar_.camera, options_.depth);
+    if (!cloud_sensor) return log::error("{}: {}", lidar_.id, cloud_sensor.error().message);
+    const Cloud thin = with_normals(voxel_downsample(*cloud_sensor, options_.voxel_size_m), Eigen::Vector3f::Zero(),
+                                    {2.5 * options_.voxel_size_m, 5});
+    cloud_map_ = transformed(lidar_.T_map_sensor, thin);
+  });
   return cloud_map_;
 }
 
+SightView LidarSurfaces::view() const { return view_of(image_, lidar_, options_); }
+
+LidarFrame::LidarFrame(DepthImage still, std::shared_ptr<const LidarSurfaces> surfaces, const GlobalLidar& lidar,
+                       const SnapshotOptions& options)
+    : still_(std::move(still)), surfaces_(std::move(surfaces)), lidar_(lidar), options_(options) {}
+
 const SightView& LidarFrame::view() const {
-  std::call_once(once_, [this] { derive(); });
+  std::call_once(once_, [this] { view_ = view_of(still_, lidar_, options_); });
   return view_;
 }
 
-Snapshot::Snapshot(StampNs stamp_ns, std::vector<std::shared_ptr<const LidarFrame>> frames,
-                   const SnapshotOptions& options)
-    : stamp_ns_(stamp_ns), frames_(std::move(frames)), options_(options) {}
-
-const Target& Snapshot::target() const {
-  std::call_once(target_once_, [this] {
+const std::shared_ptr<const Surfaces>& StitchedRoom::surfaces() const {
+  std::call_once(surfaces_once_, [this] {
     Cloud stitched;
     std::vector<SightView> views;
-    for (const auto& frame : frames_) {
-      append(stitched, frame->cloud_map());
-      views.push_back(frame->view());
+    for (const auto& part : parts_) {
+      append(stitched, part->cloud_map());
+      views.push_back(part->view());
     }
-    target_ = make_target(voxel_downsample(stitched, options_.voxel_size_m), std::move(views),
-                          options_.voxel_size_m);
+    surfaces_ = std::make_shared<const Surfaces>(voxel_downsample(stitched, options_.voxel_size_m), std::move(views),
+                                                 options_.voxel_size_m);
   });
-  return target_;
+  return surfaces_;
 }
 
-const Described& Snapshot::described() const {
+const Described& StitchedRoom::described() const {
   std::call_once(described_once_, [this] {
-    described_ = describe(target().coarse, {10 * options_.voxel_size_m, options_.feature_sampling, 1});
+    described_ = describe(surfaces()->coarse, {10 * options_.voxel_size_m, options_.feature_sampling, 1});
   });
   return described_;
+}
+
+const Target& Snapshot::target() const {
+  std::call_once(once_, [this] {
+    target_.surfaces = room_->surfaces();
+    for (const auto& frame : frames_) target_.views.push_back(frame->view());
+  });
+  return target_;
 }
 
 }  // namespace liloc

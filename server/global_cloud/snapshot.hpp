@@ -1,5 +1,5 @@
 #pragma once
-// One moment of the room: the ceiling frames, the stitched cloud, and what registration needs of it, built once.
+// One moment of the room: what each ceiling LiDAR sees, and the surfaces that this moment shares with its neighbours.
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -14,53 +14,88 @@ namespace liloc {
 struct SnapshotOptions {
   double voxel_size_m = 0.05;
   DepthOptions depth;
-  int view_factor = 2;          ///< pixels of a ceiling image per pixel of its line-of-sight view
+  int view_factor = 2;            ///< pixels of a ceiling image per pixel of its line-of-sight view
   double feature_sampling = 0.5;  ///< share of the thinned GPC's points that get a descriptor
 };
 
-/// A ceiling LiDAR's frame. Immutable; what is derived from it alone is derived when first asked for and shared by
-/// all snapshots that hold the frame. Any thread may ask.
-class LidarFrame {
+/// The surfaces before one LiDAR, as long as they do not change: shared by all frames of that time. The cloud is
+/// derived when first asked for. Immutable; any thread may ask.
+class LidarSurfaces {
  public:
-  /// `lidar` outlives the frame; the image's size is the camera's.
-  LidarFrame(DepthImage image, const GlobalLidar& lidar, const SnapshotOptions& options);
+  /// `lidar` outlives this; the image's size is the camera's.
+  LidarSurfaces(DepthImage image, const GlobalLidar& lidar, const SnapshotOptions& options);
 
-  [[nodiscard]] StampNs stamp_ns() const { return image_.stamp_ns; }
-  [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
   /// Voxelized, map frame, normals towards the sensor.
   [[nodiscard]] const Cloud& cloud_map() const;
-  [[nodiscard]] const SightView& view() const;
+  [[nodiscard]] SightView view() const;
 
  private:
-  void derive() const;
-
   const DepthImage image_;
   const GlobalLidar& lidar_;
   const SnapshotOptions options_;
   mutable std::once_flag once_;
   mutable Cloud cloud_map_;
+};
+
+/// A ceiling LiDAR's frame: its surfaces, and its lines of sight at this very moment, past everything that moves.
+class LidarFrame {
+ public:
+  LidarFrame(DepthImage still, std::shared_ptr<const LidarSurfaces> surfaces, const GlobalLidar& lidar,
+             const SnapshotOptions& options);
+
+  [[nodiscard]] StampNs stamp_ns() const { return still_.stamp_ns; }
+  [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
+  [[nodiscard]] const std::shared_ptr<const LidarSurfaces>& surfaces() const { return surfaces_; }
+  [[nodiscard]] const SightView& view() const;
+
+ private:
+  const DepthImage still_;
+  const std::shared_ptr<const LidarSurfaces> surfaces_;
+  const GlobalLidar& lidar_;
+  const SnapshotOptions options_;
+  mutable std::once_flag once_;
   mutable SightView view_;
+};
+
+/// The GPC stitched from the surfaces of all LiDARs, with its indices and descriptors, each built by its first user.
+class StitchedRoom {
+ public:
+  using Parts = std::vector<std::shared_ptr<const LidarSurfaces>>;
+  StitchedRoom(Parts parts, const SnapshotOptions& options) : parts_(std::move(parts)), options_(options) {}
+
+  [[nodiscard]] const Parts& parts() const { return parts_; }
+  [[nodiscard]] const std::shared_ptr<const Surfaces>& surfaces() const;
+  [[nodiscard]] const Described& described() const;
+
+ private:
+  const Parts parts_;
+  const SnapshotOptions options_;
+  mutable std::once_flag surfaces_once_, described_once_;
+  mutable std::shared_ptr<const Surfaces> surfaces_;
+  mutable Described described_;
 };
 
 /// Immutable; shared by all clients whose requests fall on it.
 class Snapshot {
  public:
-  Snapshot(StampNs stamp_ns, std::vector<std::shared_ptr<const LidarFrame>> frames, const SnapshotOptions& options);
+  using Frames = std::vector<std::shared_ptr<const LidarFrame>>;
+  Snapshot(StampNs stamp_ns, Frames frames, std::shared_ptr<const StitchedRoom> room)
+      : stamp_ns_(stamp_ns), frames_(std::move(frames)), room_(std::move(room)) {}
 
   [[nodiscard]] StampNs stamp_ns() const { return stamp_ns_; }
-  [[nodiscard]] const std::vector<std::shared_ptr<const LidarFrame>>& frames() const { return frames_; }
-  /// The stitched GPC and its indices; the first caller builds them.
+  [[nodiscard]] const Frames& frames() const { return frames_; }
+  [[nodiscard]] const std::shared_ptr<const StitchedRoom>& room() const { return room_; }
+  /// The GPC and the ceiling's lines of sight; the first caller builds what is not built yet.
   [[nodiscard]] const Target& target() const;
-  /// Descriptors of the thinned GPC; the first caller computes them.
-  [[nodiscard]] const Described& described() const;
+  /// Descriptors of the thinned GPC.
+  [[nodiscard]] const Described& described() const { return room_->described(); }
 
  private:
   const StampNs stamp_ns_;
-  const std::vector<std::shared_ptr<const LidarFrame>> frames_;
-  const SnapshotOptions options_;
-  mutable std::once_flag target_once_, described_once_;
+  const Frames frames_;
+  const std::shared_ptr<const StitchedRoom> room_;
+  mutable std::once_flag once_;
   mutable Target target_;
-  mutable Described described_;
 };
 
 }  // namespace liloc

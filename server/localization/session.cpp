@@ -1,9 +1,14 @@
 #include "server/localization/session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace liloc {
 namespace {
+
+constexpr double kPairsOfASpot = 1000;  // a pair's weight against the prior: so many make one spot's certainty
 
 void report(const Hypothesis& hypothesis, double margin, SpotReply* reply) {
   reply->T_map_sensor = hypothesis.T_map_sensor();
@@ -11,6 +16,9 @@ void report(const Hypothesis& hypothesis, double margin, SpotReply* reply) {
   reply->inlier_rmse_m = hypothesis.alignment.inlier_rmse_m;
   reply->overlap = hypothesis.judgement.overlap();
   reply->margin = margin;
+  const Judgement& j = hypothesis.judgement;
+  reply->text = fmt::format("device: {:.0f} % agree, {:.1f} % conflict; ceiling: {:.0f} % agree", 100 * j.agree,
+                            100 * j.conflict, 100 * j.map_agree);
   const Matrix6d information = hypothesis.alignment.information + 1e-2 * Matrix6d::Identity();
   reply->covariance = information.inverse();
 }
@@ -83,6 +91,8 @@ std::optional<Session::Decision> Session::search_room(const std::shared_ptr<cons
   const auto decision = decide(*spot, *found);
   if (decision) {
     T_map_odom_ = decision->T_map_odom;
+    sd_rad_ = verify_.locked_sd_rad;
+    sd_m_ = verify_.locked_sd_m;
     weak_in_a_row_ = 0;
   }
   return decision;
@@ -102,19 +112,24 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
   conclude(SpotStatus::provisional, few ? Reason::awaiting_spots : led ? Reason::inconsistent : Reason::ambiguous, reply);
 }
 
-/// Refines the predicted pose, held by odometry where surfaces say nothing; true when free space bears it out.
+/// Refines the predicted pose, held by odometry as far as the track is sure of itself. True when free space bears
+/// the answer out; otherwise the prediction is the better answer.
 bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* reply) {
+  sd_rad_ = std::hypot(sd_rad_, request.odom_sd_rad);
+  sd_m_ = std::hypot(sd_m_, request.odom_sd_m);
   const Pose predicted = *T_map_odom_ * request.T_odom_sensor;
-  PosePrior prior;
-  prior.T_target_source = predicted;
-  prior.sd_rad = std::max(0.01, request.odom_sd_rad) * (1 + weak_in_a_row_);
-  prior.sd_m = std::max(0.03, request.odom_sd_m) * (1 + weak_in_a_row_);
-  const Hypothesis here = refine_and_judge(spot.problem(), predicted, {}, &prior);
+  const PosePrior prior{predicted, sd_rad_, sd_m_, verify_.spot_sd_m * std::sqrt(kPairsOfASpot)};
+  Hypothesis here = refine_and_judge(spot.problem(), predicted, {}, &prior);
+  const bool good = distance_m(here.T_map_sensor(), predicted) < verify_.tracks.gate_m &&
+                    angle_between_rad(here.T_map_sensor(), predicted) < verify_.tracks.gate_rad &&
+                    fits(here.judgement, verify_.tracks);
+  if (!good) here.alignment.T_target_source = predicted;
   report(here, last_margin_, reply);
-  const bool stayed = distance_m(here.T_map_sensor(), predicted) < verify_.tracks.gate_m &&
-                      angle_between_rad(here.T_map_sensor(), predicted) < verify_.tracks.gate_rad;
-  if (!stayed || !fits(here.judgement, verify_.tracks)) return false;
+  if (!good) return false;
   T_map_odom_ = here.T_map_sensor() * request.T_odom_sensor.inverse();
+  const auto fused = [](double a, double b) { return a * b / std::hypot(a, b); };
+  sd_rad_ = fused(sd_rad_, verify_.spot_sd_rad);
+  sd_m_ = fused(sd_m_, verify_.spot_sd_m);
   return true;
 }
 

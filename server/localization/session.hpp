@@ -19,6 +19,8 @@ struct VerifyOptions {
   double conclusive_margin = 0.45;  ///< of one spot alone: score over the runner-up's ...
   double conclusive_agree = 0.45;   ///< ... share of device points on seen surfaces ...
   double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
+  double locked_sd_rad = radians(2.0), locked_sd_m = 0.10;   ///< of map -> odom when it was just verified
+  double spot_sd_rad = radians(0.25), spot_sd_m = 0.012;     ///< of a well-observed spot, crowds and all
   int research_every = 6;           ///< while tracking, every so many spots the whole room is searched
 };
 
@@ -55,6 +57,7 @@ class Session {
   Tracks tracks_{verify_.tracks};
   std::deque<SpotPose> own_answers_;  ///< the last three spots' own best poses
   std::optional<Pose> T_map_odom_;    ///< of the verified track
+  double sd_rad_ = 0, sd_m_ = 0;      ///< of it
   double last_margin_ = 0;
   int weak_in_a_row_ = 0, spots_since_search_ = 0;
 };

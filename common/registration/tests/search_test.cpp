@@ -30,7 +30,7 @@ TEST_P(SearchLaw, OneThreadAndTwoFindTheSamePlace) {
 
 TEST_P(SearchLaw, FeaturesNeedNoGravityAndTheirCellsNoOrder) {
   const WatchedRoom w = watched_room(GetParam());
-  const Described room = describe(w.target.coarse, {0.5, 1.0, 1}), device = describe(w.query.medium, {0.5, 1.0, 1});
+  const Described room = describe(w.target->coarse, {0.5, 1.0, 1}), device = describe(w.query.medium, {0.5, 1.0, 1});
   FeatureSearchOptions options;
   const auto one = feature_search(w.target, room, w.query, device, options);
   options.threads = 2;
@@ -44,7 +44,7 @@ TEST_P(SearchLaw, FeaturesNeedNoGravityAndTheirCellsNoOrder) {
 
 TEST_P(SearchLaw, CellsOverlapAndHoldEveryPointOfTheRoom) {
   const WatchedRoom w = watched_room(GetParam());
-  const Described room = describe(w.target.coarse, {0.5, 1.0, 1});
+  const Described room = describe(w.target->coarse, {0.5, 1.0, 1});
   const auto cells = partition(room, 1.5, 20);
   EXPECT_GT(cells.size(), 1U);
   std::vector<int> held(room.features.size(), 0);

@@ -153,7 +153,9 @@ TEST(Localizer, ADeviceOutsideTheCoveredAreaIsNeverVerified) {
     for (std::size_t i = 0; i < world.site.global_lidars.size(); ++i)
       ASSERT_TRUE(world.cloud->add_depth(i, scene::render(seen, world.site.global_lidars[i].T_map_sensor,
                                                           scene::small_camera(), kT0 + k * kStep, 0.005, 5)));
-    EXPECT_FALSE(world.localizer->locate(world.request(k, world.truth(k))).verified()) << "spot " << k;
+    const SpotReply reply = world.localizer->locate(world.request(k, world.truth(k)));
+    EXPECT_FALSE(reply.verified()) << "spot " << k << " " << name_of(reply.reason) << " overlap " << reply.overlap << " fitness "
+                                   << reply.fitness << " margin " << reply.margin;
   }
 }
 

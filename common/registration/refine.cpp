@@ -146,6 +146,7 @@ Alignment refine(const Target& target, const Query& query, const Pose& T_target_
 
   const Normals sum = accumulate(fine, result.T_target_source, options.end_distance_m, options);
   result.pairs = sum.pairs;
+  result.pair_share = query.medium.empty() ? 0.0 : sum.pairs / static_cast<double>(query.medium.size());
   if (sum.pairs >= 12 && sum.weight > 0) {
     const double variance = std::max(sum.squared / sum.weight, 1e-6);
     Matrix6d R = Matrix6d::Zero();

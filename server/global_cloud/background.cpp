@@ -70,16 +70,15 @@ DepthImage Background::learn(const DepthImage& image) {
   return still;
 }
 
-bool Background::changed() const {
+Change Background::change() const {
   const double share = static_cast<double>(replaced_) / static_cast<double>(pixels_.size());
   const bool gained = frames_ == 3 || frames_ == 10 || frames_ == 30;
-  return gained || share > options_.fresh_share ||
-         (share > options_.late_share && to_seconds(last_ns_ - derived_ns_) > options_.refresh_seconds);
+  if (gained || share > options_.fresh_share) return Change::large;
+  return share > options_.small_share ? Change::small : Change::none;
 }
 
 DepthImage Background::surfaces() {
   replaced_ = 0;
-  derived_ns_ = last_ns_;
   DepthImage image{last_ns_, width_, height_, {}};
   image.units.reserve(pixels_.size());
   for (const Pixel& pixel : pixels_) image.units.push_back(static_cast<std::uint16_t>(pixel.surface + 0.5F));

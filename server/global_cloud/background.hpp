@@ -11,10 +11,11 @@ struct BackgroundOptions {
   double tolerance_m = 0.06;     ///< depths this close, plus 1 % of the depth, are the same surface
   double forget_seconds = 1.0;   ///< a surface without any return for so long is forgotten
   int most_averaged = 12;        ///< frames in a pixel's running mean
-  double fresh_share = 0.004;    ///< so much of the image changed: the room is to be derived anew ...
-  double late_share = 0.0005;    ///< ... or so much of it, ...
-  double refresh_seconds = 4.0;  ///< ... once so long has passed
+  double fresh_share = 0.004;    ///< so much of the image changed: the room is to be derived anew at once ...
+  double small_share = 0.0005;   ///< ... or with the next renewal
 };
+
+enum class Change { none, small, large };
 
 /// The room before one ceiling LiDAR without what moves. The LiDAR stands still, so each pixel has a history of its
 /// own: a return nearer than its surface, or where there was none, belongs to something that came by, until it has stood
@@ -28,9 +29,9 @@ class Background {
   /// out (0), and a rim of one pixel around it.
   [[nodiscard]] DepthImage learn(const DepthImage& image);
 
-  /// Whether the surfaces have changed enough since the last call of `surfaces` to derive the room anew.
-  /// Also after the 3rd, 10th and 30th frame, for what the means have gained.
-  [[nodiscard]] bool changed() const;
+  /// How much the surfaces have changed since the last call of `surfaces`; large also after the 3rd, 10th and 30th
+  /// frame, for what the means have gained.
+  [[nodiscard]] Change change() const;
   /// The surfaces as a depth image, stamped by the last frame.
   [[nodiscard]] DepthImage surfaces();
 
@@ -47,7 +48,7 @@ class Background {
   const BackgroundOptions options_;
   const int width_, height_;
   const double scale_m_;
-  StampNs first_ns_ = 0, last_ns_ = 0, derived_ns_ = 0;
+  StampNs first_ns_ = 0, last_ns_ = 0;
   std::size_t replaced_ = 0;  ///< pixels, since the surfaces were last asked for
   int frames_ = 0;
   std::vector<Pixel> pixels_;

@@ -31,7 +31,7 @@ DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_s
 
 GlobalCloud::GlobalCloud(Site site, GlobalCloudOptions options)
     : site_(std::move(site)), options_(options), frames_(site_.global_lidars.size()) {
-  for (const GlobalLidar& lidar : site_.global_lidars) watches_.push_back({Background(lidar.camera, options_.background), nullptr});
+  for (const GlobalLidar& lidar : site_.global_lidars) watches_.push_back({Background(lidar.camera, options_.background), nullptr, 0});
 }
 
 Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
@@ -56,13 +56,19 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
 
 GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
   const GlobalLidar& info = site_.global_lidars[lidar];
-  auto& [background, surfaces] = watches_[lidar];
+  auto& [background, surfaces, epoch] = watches_[lidar];
   if (!options_.drop_moving) {
     surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);
   } else {
     image = background.learn(image);
-    if (!surfaces || background.changed())
+    if (background.change() == Change::small && image.stamp_ns - epoch_since_ns_ > options_.renew_ns) {
+      ++epoch_;
+      epoch_since_ns_ = image.stamp_ns;
+    }
+    if (!surfaces || background.change() == Change::large || epoch != epoch_) {
+      epoch = epoch_;
       surfaces = std::make_shared<const LidarSurfaces>(background.surfaces(), info, options_.snapshot);
+    }
   }
   return std::make_shared<const LidarFrame>(std::move(image), surfaces, info, options_.snapshot);
 }

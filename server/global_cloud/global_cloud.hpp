@@ -20,6 +20,7 @@ struct GlobalCloudOptions {
   BackgroundOptions background;
   bool drop_moving = true;                ///< what moves is not map: it neither registers nor contradicts
   StampNs keep_ns = from_seconds(3.0);    ///< frames older than the newest by more than this are forgotten
+  StampNs renew_ns = from_seconds(4.0);    ///< small changes of the room are gathered for so long
   StampNs match_ns = from_ms(100.0);      ///< farther from a request than this is no GPC (paper, section 5.3)
   std::size_t max_frames_per_lidar = 128;  ///< a LiDAR that floods loses its oldest
 };
@@ -52,6 +53,7 @@ class GlobalCloud {
   struct Watch {
     Background background;
     std::shared_ptr<const LidarSurfaces> surfaces;
+    int epoch = 0;
   };
   [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);  ///< mutex_ held
   [[nodiscard]] std::shared_ptr<const StitchedRoom> room_of(const std::vector<Frame>& frames);  ///< mutex_ held
@@ -64,6 +66,8 @@ class GlobalCloud {
   std::condition_variable arrived_;
   std::vector<std::deque<Frame>> frames_;                  ///< per LiDAR, by rising stamp
   std::vector<Watch> watches_;                             ///< per LiDAR
+  int epoch_ = 0;  ///< raised when small changes have gathered: all LiDARs then renew together, at one rebuild's cost
+  StampNs epoch_since_ns_ = 0;
   std::deque<std::shared_ptr<const Snapshot>> snapshots_;  ///< asked for lately, newest last
   std::deque<std::shared_ptr<const StitchedRoom>> rooms_;  ///< of them
 };

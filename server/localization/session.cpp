@@ -37,12 +37,13 @@ void Session::start_segment(std::uint32_t segment) {
   own_answers_.clear();
   T_map_odom_.reset();
   weak_in_a_row_ = spots_since_search_ = 0;
+  followed_ = false;
 }
 
 bool Session::conclusive(const std::vector<Hypothesis>& found) const {
   if (found.empty()) return false;
   const Judgement& best = found.front().judgement;
-  return best.agree >= verify_.conclusive_agree && best.overlap() >= verify_.conclusive_overlap &&
+  return fits(found.front(), verify_.tracks) && best.agree >= verify_.conclusive_agree && best.overlap() >= verify_.conclusive_overlap &&
          best.map_agree >= verify_.conclusive_overlap && margin_of(found) >= verify_.conclusive_margin;
 }
 
@@ -65,7 +66,7 @@ void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* re
 
 /// Verified or why not yet: the three equality checks among the spots' own answers, and a lead over every rival.
 std::optional<Session::Decision> Session::decide(const Spot& spot, const std::vector<Hypothesis>& found) const {
-  if (conclusive(found))
+  if (!followed_ && conclusive(found))  // one spot never outvotes a track that still holds
     return Decision{Reason::conclusive, found.front().T_map_sensor() * spot.T_odom_sensor().inverse(), found.front()};
   const Track& best = tracks_.best_first().front();
   const auto spots = static_cast<double>(tracks_.spots());
@@ -122,7 +123,7 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
   Hypothesis here = refine_and_judge(spot.problem(), predicted, {}, &prior);
   const bool good = distance_m(here.T_map_sensor(), predicted) < verify_.tracks.gate_m &&
                     angle_between_rad(here.T_map_sensor(), predicted) < verify_.tracks.gate_rad &&
-                    fits(here.judgement, verify_.tracks);
+                    fits(here, verify_.tracks);
   if (!good) here.alignment.T_target_source = predicted;
   report(here, last_margin_, reply);
   if (!good) return false;
@@ -135,6 +136,7 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
 
 void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
   const bool good = follow(request, *spot, reply);
+  followed_ = good;
   weak_in_a_row_ = good ? 0 : weak_in_a_row_ + 1;
   conclude(good ? SpotStatus::verified : SpotStatus::provisional, good ? Reason::confirmed : Reason::weak, reply);
   // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that was

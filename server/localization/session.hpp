@@ -58,6 +58,7 @@ class Session {
   std::deque<SpotPose> own_answers_;  ///< the last three spots' own best poses
   std::optional<Pose> T_map_odom_;    ///< of the verified track
   double sd_rad_ = 0, sd_m_ = 0;      ///< of it
+  bool followed_ = false;             ///< the newest spot bore the track out
   double last_margin_ = 0;
   int weak_in_a_row_ = 0, spots_since_search_ = 0;
 };

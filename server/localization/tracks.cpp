@@ -16,9 +16,14 @@ double Track::total() const { return std::accumulate(scores.begin(), scores.end(
 int Track::supports() const { return static_cast<int>(std::count(fits.begin(), fits.end(), true)); }
 int Track::own_finds() const { return static_cast<int>(std::count(found_own.begin(), found_own.end(), true)); }
 
-bool fits(const Judgement& judgement, const TrackOptions& options) {
+double bound_share(const Hypothesis& hypothesis) {
+  return hypothesis.judgement.agree > 0 ? hypothesis.alignment.pair_share / hypothesis.judgement.agree : 0.0;
+}
+
+bool fits(const Hypothesis& hypothesis, const TrackOptions& options) {
+  const Judgement& judgement = hypothesis.judgement;
   return judgement.agree >= options.fits_agree && judgement.overlap() >= options.fits_overlap &&
-         judgement.map_agree >= options.fits_map_agree;
+         judgement.map_agree >= options.fits_map_agree && bound_share(hypothesis) >= options.fits_bound;
 }
 
 void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found,
@@ -41,7 +46,7 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
   track->latest = *here;
   track->scores.push_back(here->judgement.score);
   track->found_own.push_back(own);
-  track->fits.push_back(stayed && liloc::fits(here->judgement, options_));
+  track->fits.push_back(stayed && liloc::fits(*here, options_));
 }
 
 Track Tracks::founded(const Hypothesis& hypothesis) const {
@@ -57,7 +62,7 @@ Track Tracks::founded(const Hypothesis& hypothesis) const {
   track.latest = hypothesis;
   track.scores.push_back(hypothesis.judgement.score);
   track.found_own.push_back(true);
-  track.fits.push_back(liloc::fits(hypothesis.judgement, options_));
+  track.fits.push_back(liloc::fits(hypothesis, options_));
   return track;
 }
 

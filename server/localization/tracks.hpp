@@ -28,10 +28,13 @@ struct TrackOptions {
   double fits_agree = 0.12;      ///< least share of device points on seen surfaces
   double fits_overlap = 0.93;    ///< least share of agreeing among judged device points
   double fits_map_agree = 0.90;  ///< the same for ceiling points in the device's view
+  double fits_bound = 0.5;       ///< least share of agreeing points with a surface along their normal
 };
 
-/// Whether free space bears a pose out.
-[[nodiscard]] bool fits(const Judgement& judgement, const TrackOptions& options);
+/// Whether free space and surfaces bear a pose out: points that lie where a surface was seen must also lie along it.
+[[nodiscard]] bool fits(const Hypothesis& hypothesis, const TrackOptions& options);
+/// Share of the agreeing device points that found a surface with their own normal.
+[[nodiscard]] double bound_share(const Hypothesis& hypothesis);
 
 /// The tracks of one odometry segment. Each new spot is compared with every track, and each new track with the
 /// spots before it, so that all are weighed by the same evidence. Not thread-safe.

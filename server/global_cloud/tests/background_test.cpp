@@ -47,18 +47,18 @@ TEST(Background, WhatLeavesUncoversMapAtOnce) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(count(background.learn(with_visitor(0.15 * i, 10, 16)), 0), 0);
   (void)background.learn(with_visitor(1.00, 0, 0));
   EXPECT_EQ(count(background.learn(with_visitor(1.15, 0, 0)), 4000), 40 * 30);
-  EXPECT_TRUE(background.changed());
+  EXPECT_EQ(background.change(), Change::large);
   EXPECT_EQ(count(background.surfaces(), 4000), 40 * 30);
 }
 
 TEST(Background, ACalmRoomIsDerivedOnce) {
   Background background(kCamera, {});
   (void)background.learn(with_visitor(0, 0, 0));
-  EXPECT_TRUE(background.changed());
+  EXPECT_EQ(background.change(), Change::large);
   (void)background.surfaces();
   for (int i = 1; i < 20; ++i) {
     (void)background.learn(with_visitor(0.15 * i, i, i + 6));
-    EXPECT_EQ(background.changed(), i == 2 || i == 9) << "someone walks by at " << 0.15 * i;
+    EXPECT_EQ(background.change(), i == 2 || i == 9 ? Change::large : Change::none) << "someone walks by at " << 0.15 * i;
   }
 }
 

@@ -58,7 +58,8 @@ struct Pose {
   std::array<double, 4> rotation_xyzw{0, 0, 0, 1};
 };
 
-enum class Local { cloud, inertial, dead_reckoning };
+/// external: the odometry is somebody else's (`push_odometry`); the device registers nothing by itself.
+enum class Local { cloud, inertial, dead_reckoning, external };
 
 /// Every default works in an office. New fields go last.
 struct Options {
@@ -76,8 +77,10 @@ struct Options {
   double still_seconds = 0;          ///< the device stands still for so long at the start (IMU calibration)
   bool cold = false;                 ///< each request is answered on its own: no prior, no history
   std::uint64_t seed = 1;
-  std::size_t queue_frames = 4;  ///< depth frames that may wait; the oldest is dropped for the newest
-  std::string trace_folder;      ///< online.tum, trajectory.tum, spots.csv, local.csv; empty: none
+  std::size_t queue_frames = 4;       ///< depth frames that may wait; the oldest is dropped for the newest
+  std::string trace_folder;           ///< online.tum, trajectory.tum, spots.csv, local.csv; empty: none
+  std::optional<Pose> T_base_sensor;  ///< with external odometry: the sensor on what the odometry moves
+  double cpu_share = 1;               ///< of one core, 0.02..1; frames are left out to keep it
 };
 
 /// searching: never located. tracking: located, the server answers. coasting: located once, and carried on by
@@ -113,6 +116,9 @@ struct Stats {
   std::uint64_t requests = 0, requests_unsent = 0, requests_unanswered = 0;
   std::uint64_t replies = 0, replies_verified = 0, replies_refused = 0;
   double frame_ms_median = 0, frame_ms_p99 = 0;  ///< over the last 512 frames
+  std::uint64_t frames_skipped = 0;              ///< left out because the computer, or its share, is too small
+  std::uint64_t odometry_refused = 0;
+  double cpu_s = 0;  ///< CPU time of the registration so far
 };
 
 /// Called for every processed frame on the registration thread: a slow callback delays the next frame.
@@ -142,6 +148,15 @@ class Client {
   /// stopped.
   Outcome<Taken> push_imu(std::int64_t stamp_ns, const std::array<double, 3>& angular_velocity_rad_s,
                           const std::array<double, 3>& specific_force_m_s2);
+  /// `xyz`: `count` points in the sensor's frame, three floats each, copied; in place of a depth image. Of the
+  /// points, those within options.camera are used: give it the sensor's field of view and about as many pixels
+  /// as it has points there. Errors: a null pointer, over 4 million points, stopped.
+  Outcome<Taken> push_points(const float* xyz, std::size_t count, std::int64_t stamp_ns);
+  /// With Local::external: where the odometry has the base, in its own frame; often, and in order. A gap over a
+  /// second or a jump starts a new odom_segment. `covariance`: of the pose, row-major, [rad; m]; its growth
+  /// bounds the motion's error. Errors: another method, not finite, not a rotation, stopped.
+  Outcome<Taken> push_odometry(std::int64_t stamp_ns, const Pose& T_odom_base,
+                               const std::optional<std::array<double, 36>>& covariance = {});
 
   /// Of the newest processed frame.
   [[nodiscard]] PoseUpdate newest() const;

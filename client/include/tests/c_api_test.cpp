@@ -5,21 +5,24 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "client/include/liloc/client.h"
+#include "client/include/tests/consumer/box_frames.h"
 
 namespace {
 
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-constexpr int kDomain = 176;  // of this test alone
+constexpr int kDomain = 176, kAnsweredDomain = 177;  // of this test alone
 constexpr int kWidth = 32, kHeight = 24;
 
 liloc_client_options good_options() {
@@ -238,6 +241,66 @@ TEST(CApi, ACallbackThatStopsItsClientIsRefused) {
   EXPECT_TRUE(within(20s, [&] { return attempts.calls == 1; }));
   EXPECT_EQ(liloc_client_stop(client.get()), LILOC_OK) << error();
   EXPECT_EQ(attempts.refused, 3);
+}
+
+struct Answers {
+  std::mutex mutex;
+  int verified = 0;
+  liloc_reply last{};
+  std::string status, reason, text;
+};
+
+void take_reply(const liloc_reply* reply, void* user) {
+  auto& answers = *static_cast<Answers*>(user);
+  const std::scoped_lock lock(answers.mutex);
+  answers.verified += reply->verified;
+  answers.last = *reply;
+  answers.status = reply->status;
+  answers.reason = reply->reason;
+  answers.text = reply->text;
+}
+
+/// Feeds the walk, again and again at one place, until the newest pose is global.
+bool located(liloc_client* client, liloc_pose_update& update) {
+  std::vector<std::uint16_t> units(FRAME_WIDTH * FRAME_HEIGHT);
+  render_frame(0, units.data());
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_EQ(liloc_client_push_depth(client, units.data(), FRAME_WIDTH, FRAME_HEIGHT, frame_stamp_ns(i)),
+              LILOC_OK);
+    std::this_thread::sleep_for(10ms);
+    EXPECT_EQ(liloc_client_newest(client, &update, sizeof update), LILOC_OK);
+    if (update.has_map) return true;
+  }
+  return false;
+}
+
+TEST(CApi, RepliesLocateTheClient) {
+  FILE* const server = popen((ANSWERING_SERVER " " + std::to_string(kAnsweredDomain)).c_str(), "w");
+  ASSERT_NE(server, nullptr);
+  liloc_client_options o = good_options();
+  o.domain = kAnsweredDomain;
+  o.interval_ms = 100;
+  o.camera = {FRAME_WIDTH, FRAME_HEIGHT, FOCAL_PX, FOCAL_PX, (FRAME_WIDTH - 1) / 2.0, (FRAME_HEIGHT - 1) / 2.0,
+              UNIT_M};
+  Answers answers;
+  liloc_pose_update now{};
+  {
+    const Handle client = created(o);
+    ASSERT_EQ(liloc_client_on_reply(client.get(), take_reply, &answers), LILOC_OK);
+    ASSERT_EQ(liloc_client_start(client.get()), LILOC_OK) << error();
+    EXPECT_TRUE(located(client.get(), now));
+  }
+  EXPECT_EQ(pclose(server), 0);
+  EXPECT_EQ(now.state, LILOC_TRACKING);
+  EXPECT_TRUE(now.server_connected);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(now.T_map_sensor.translation_m[i], now.T_odom_sensor.translation_m[i] + 1 + i, 1e-6);
+  EXPECT_GE(answers.verified, 1);
+  EXPECT_TRUE(answers.last.has_map);
+  EXPECT_EQ(answers.status + " " + answers.reason + " " + answers.text, "verified confirmed by heart");
+  EXPECT_NEAR(answers.last.covariance[7], 1e-4, 1e-9);
+  EXPECT_EQ(answers.last.covariance[1], 0);
+  EXPECT_NEAR(answers.last.T_map_sensor.translation_m[2], 3, 0.1);
 }
 
 TEST(CApi, ManyThreadsMayPushWhileOneStops) {

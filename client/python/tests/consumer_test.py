@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """A robot's program in Python, with the installed module: locates itself by odometry, and uses everything wrongly."""
 import gc
+import os
 import subprocess
 import sys
 import threading
@@ -13,7 +14,7 @@ import numpy as np
 import box_frames as box
 import liloc
 
-DOMAIN = 175  # of this test alone
+DOMAIN, ANSWERED_DOMAIN = 175, 178  # of this test alone
 CAMERA = liloc.Camera(box.WIDTH, box.HEIGHT, box.FOCAL_PX, box.FOCAL_PX, (box.WIDTH - 1) / 2, (box.HEIGHT - 1) / 2)
 IMAGE = np.full((box.HEIGHT, box.WIDTH), 2000, np.uint16)
 
@@ -63,6 +64,30 @@ class Walk(unittest.TestCase):
             waiting.join()
             self.assertGreaterEqual(time.monotonic() - start, 0.5)
             self.assertIsNone(robot.wait(timeout_s=0))
+
+
+class Answered(unittest.TestCase):
+    def test_replies_locate_the_client(self):
+        replies = []
+        image = box.render(0)
+        server = subprocess.Popen([os.environ["ANSWERING_SERVER"], str(ANSWERED_DOMAIN)], stdin=subprocess.PIPE)
+        self.addCleanup(server.wait, 20)
+        with server.stdin, liloc.Client("answered", CAMERA, domain=ANSWERED_DOMAIN, interval_ms=100,
+                                        on_reply=replies.append) as robot:
+            for frame in range(1000):
+                robot.push_depth(image, box.stamp_ns(frame))
+                pose = robot.wait(newer_than_ns=box.stamp_ns(frame) - 1, timeout_s=20)
+                if pose.T_map_sensor is not None:
+                    break
+                time.sleep(0.01)
+        np.testing.assert_allclose(pose.T_map_sensor[:3, 3] - pose.T_odom_sensor[:3, 3], [1, 2, 3], atol=1e-6)
+        self.assertEqual((pose.state, pose.server_connected), (liloc.State.TRACKING, True))
+        self.assertTrue(replies and replies[-1].verified)
+        self.assertEqual((replies[-1].status, replies[-1].reason, replies[-1].text),
+                         ("verified", "confirmed", "by heart"))
+        np.testing.assert_allclose(replies[-1].covariance, 1e-4 * np.eye(6), atol=1e-9)
+        self.assertEqual(replies[-1].T_map_sensor.shape, (4, 4))
+        self.assertGreaterEqual(robot.stats().replies_verified, 1)
 
 
 class Imu(unittest.TestCase):
@@ -218,10 +243,10 @@ class End(unittest.TestCase):
                    f"robot = liloc.Client('ends', camera, domain={DOMAIN}, queue_frames=100,\n"
                    "                     on_pose=lambda update: print(update.stamp_ns, flush=True))\n"
                    "liloc.set_log(print)\n"
-                   "for i in range(20): robot.push_depth(box.render(0), i + 1)\n")
+                   "for i in range(20): robot.push_depth(box.render(0), box.stamp_ns(i))\n")
         ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=30)
         self.assertEqual((ended.returncode, ended.stderr), (0, ""))
-        self.assertIn("20", ended.stdout.split())
+        self.assertIn(str(box.stamp_ns(19)), ended.stdout.split())
 
 
 if __name__ == "__main__":

@@ -11,6 +11,8 @@
 namespace liloc::client {
 namespace {
 
+constexpr std::size_t kMostPoints = 4'000'000;
+
 Outcome<Taken> to_public(const Status& status) {
   return status ? Outcome<Taken>(Taken{}) : Outcome<Taken>::failed(status.error().message);
 }
@@ -121,6 +123,28 @@ Outcome<Taken> Client::push_depth(const std::uint16_t* units, int width, int hei
   image.height = height;
   image.units.assign(units, units + static_cast<std::ptrdiff_t>(width) * height);
   return to_public(impl_->session->push_depth(std::move(image)));
+}
+
+Outcome<Taken> Client::push_points(const float* xyz, std::size_t count, std::int64_t stamp_ns) {
+  if (xyz == nullptr || count > kMostPoints)
+    return Outcome<Taken>::failed(fmt::format("{}: {} points{}; pass up to {}", impl_->id, count,
+                                              xyz == nullptr ? " at NULL" : "", kMostPoints));
+  Cloud cloud;
+  cloud.points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) cloud.points.emplace_back(xyz + 3 * i);
+  return to_public(impl_->session->push_points(stamp_ns, std::move(cloud)));
+}
+
+Outcome<Taken> Client::push_odometry(std::int64_t stamp_ns, const Pose& T_odom_base,
+                                     const std::optional<std::array<double, 36>>& covariance) {
+  const auto pose = to_domain(T_odom_base, "T_odom_base");
+  if (!pose) return Outcome<Taken>::failed(fmt::format("{}: {}", impl_->id, pose.error().message));
+  OdometrySample sample{stamp_ns, *pose, std::nullopt};
+  if (covariance)
+    sample.covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance->data());
+  if (sample.covariance && !sample.covariance->allFinite())
+    return Outcome<Taken>::failed(fmt::format("{}: covariance is not finite; leave it out", impl_->id));
+  return to_public(impl_->session->push_odometry(sample));
 }
 
 Outcome<Taken> Client::push_imu(std::int64_t stamp_ns, const std::array<double, 3>& angular_velocity_rad_s,

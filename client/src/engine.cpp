@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/src/external_odometry.hpp"
 #include "client/src/image_thinning.hpp"
 #include "client/src/informativeness.hpp"
 #include "client/src/map_link.hpp"
 #include "client/src/odometry.hpp"
+#include "client/src/points_view.hpp"
 #include "client/src/request_schedule.hpp"
 #include "common/base/log.hpp"
 #include "common/codec/codec.hpp"
@@ -32,13 +34,20 @@ OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
   return options;
 }
 
+/// Where a frame was taken, and whether it can be sent.
+struct Placed {
+  OdometryStep step;
+  bool informative = false;
+};
+
 }  // namespace
 
 Result<LocalMethod> local_method_from(std::string_view name) {
   if (name == "cloud") return LocalMethod::cloud;
   if (name == "inertial") return LocalMethod::inertial;
   if (name == "dead-reckoning") return LocalMethod::dead_reckoning;
-  return fail("local method is '{}'; must be cloud, inertial or dead-reckoning", name);
+  if (name == "external") return LocalMethod::external;
+  return fail("local method is '{}'; must be cloud, inertial, dead-reckoning or external", name);
 }
 
 struct Engine::Impl {
@@ -49,7 +58,9 @@ struct Engine::Impl {
         schedule(options.interval_ns, options.reply_timeout_ns),
         link(kSilentIntervals * options.interval_ns) {
     if (options.T_imu_sensor) imu.emplace(ImuTrackOptions{.still_seconds = options.still_seconds});
-    if (!imu && options.local != LocalMethod::cloud)
+    if (options.local == LocalMethod::external)
+      external.emplace(ExternalOdometryOptions{.T_base_sensor = options.T_base_sensor});
+    else if (!imu && options.local != LocalMethod::cloud)
       log::warning("local registration without an IMU: the cloud method is used instead");
   }
 
@@ -57,13 +68,18 @@ struct Engine::Impl {
     return {.min_range_m = options.min_range_m, .max_range_m = options.max_range_m};
   }
   [[nodiscard]] Status check(const DepthImage& image) const;
-  [[nodiscard]] Result<FrameResult> add_depth(const DepthImage& image);
+  /// `points`: within the view, where the frame came as a cloud.
+  [[nodiscard]] Result<FrameResult> add(const DepthImage& image, const Cloud* points);
+  [[nodiscard]] Result<Placed> place(const DepthImage& image, const Cloud* points, const FrameSpread& spread);
   void note_motion(const OdometryStep& step);
-  [[nodiscard]] Result<SpotRequest> make_request(const DepthImage& image, const OdometryStep& step);
+  void ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed);
+  [[nodiscard]] Result<SpotRequest> make_request(const DepthImage& image, const Cloud* points,
+                                                 const OdometryStep& step);
 
   EngineOptions options;
   int thinning;
   std::optional<ImuTrack> imu;
+  std::optional<ExternalOdometry> external;
   Informativeness informativeness;
   Odometry odometry;
   RequestSchedule schedule;
@@ -104,8 +120,10 @@ void Engine::Impl::note_motion(const OdometryStep& step) {
   T_odom_last = step.T_odom_sensor;
 }
 
-Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const OdometryStep& step) {
-  const auto cloud = depth_to_cloud(image, options.camera, depth_options());
+Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cloud* points,
+                                               const OdometryStep& step) {
+  auto cloud =
+      points != nullptr ? Result<Cloud>(*points) : depth_to_cloud(image, options.camera, depth_options());
   if (!cloud) return tl::unexpected(cloud.error());
   auto lpc = encode(voxel_downsample(*cloud, options.voxel_size_m));
   if (!lpc) return tl::unexpected(lpc.error());
@@ -128,58 +146,76 @@ Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Od
   }
   r.cold = options.cold;
   path_m = turned_rad = 0;
+  if (external) external->anchor();
   return r;
 }
 
-Result<FrameResult> Engine::Impl::add_depth(const DepthImage& image) {
+Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points, const FrameSpread& spread) {
+  Placed placed;
+  if (external) {
+    placed.step = external->step(image.stamp_ns);
+    placed.informative = spread.informative() && external->placed();
+    return placed;
+  }
+  const DepthImage small = thinned(image, thinning);
+  auto cloud = points != nullptr ? Result<Cloud>(*points)
+                                 : depth_to_cloud(small, thinned(options.camera, thinning), depth_options());
+  if (!cloud) return tl::unexpected(cloud.error());
+  const std::vector<Surfel> surfels =
+      extract_surfels(*cloud, Eigen::Vector3f::Zero(), {.size_m = 2 * options.voxel_size_m});
+  const bool enough = surfels.size() >= kFewestSurfels;
+  placed.informative = spread.informative() && enough;
+  // A spike or drop is a reason not to ask the server; whether the frame fits the map the odometry judges
+  // itself.
+  const bool matchable =
+      enough && spread.fault != FrameFault::covered && spread.fault != FrameFault::too_few_points;
+  placed.step = odometry.step(small, surfels, matchable, imu ? &*imu : nullptr);
+  return placed;
+}
+
+void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed) {
+  for (const std::uint64_t seq : schedule.take_unanswered(image.stamp_ns)) {
+    unanswered.push_back(seq);
+    log::warning("{}: request {} was not answered within {:.1f} s", options.client_id, seq,
+                 to_seconds(options.reply_timeout_ns));
+  }
+  if (!schedule.due(image.stamp_ns, placed.informative)) return;
+  auto made = make_request(image, points, placed.step);
+  if (made) {
+    schedule.sent(made->seq, made->stamp_ns);
+    request = std::move(*made);
+  } else {
+    log::warning("{}: frame {} is not sent: {}", options.client_id, image.stamp_ns, made.error().message);
+  }
+}
+
+Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* points) {
   if (const Status ok = check(image); !ok) return tl::unexpected(ok.error());
   const Stopwatch watch;
   const FrameSpread spread =
       informativeness.judge(image, options.camera, options.min_range_m, options.max_range_m);
   log::debug("frame: {} (sd {:.3f} m, {:.2f} valid, {:.2f} near)", name_of(spread.fault), spread.sd_m,
              spread.valid_share, spread.near_share);
-  const DepthImage small = thinned(image, thinning);
-  const auto cloud = depth_to_cloud(small, thinned(options.camera, thinning), depth_options());
-  if (!cloud) return tl::unexpected(cloud.error());
-  const std::vector<Surfel> surfels =
-      extract_surfels(*cloud, Eigen::Vector3f::Zero(), {.size_m = 2 * options.voxel_size_m});
-  const bool enough = surfels.size() >= kFewestSurfels;
-  const bool informative = spread.informative() && enough;
-  // A spike or drop is a reason not to ask the server; whether the frame fits the map the odometry judges
-  // itself.
-  const bool matchable =
-      enough && spread.fault != FrameFault::covered && spread.fault != FrameFault::too_few_points;
-  const OdometryStep step = odometry.step(small, surfels, matchable, imu ? &*imu : nullptr);
+  const auto placed = place(image, points, spread);
+  if (!placed) return tl::unexpected(placed.error());
+  const OdometryStep& step = placed->step;
   note_motion(step);
   if (local_poses.size() >= kMostLocalPoses) local_poses.erase(local_poses.begin());
-  local_poses.push_back({image.stamp_ns, step.T_odom_sensor, informative});
+  if (!external || external->placed())
+    local_poses.push_back({image.stamp_ns, step.T_odom_sensor, placed->informative});
   started = true;
   last_ns = image.stamp_ns;
 
   FrameResult frame;
   frame.stamp_ns = image.stamp_ns;
-  frame.informative = informative;
+  frame.informative = placed->informative;
   frame.method = step.method;
   frame.converged = step.converged;
   frame.T_odom_sensor = step.T_odom_sensor;
   frame.odom_segment = step.segment;
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   frame.latency_ms = watch.elapsed_ms();
-
-  for (const std::uint64_t seq : schedule.take_unanswered(image.stamp_ns)) {
-    unanswered.push_back(seq);
-    log::warning("{}: request {} was not answered within {:.1f} s", options.client_id, seq,
-                 to_seconds(options.reply_timeout_ns));
-  }
-  if (schedule.due(image.stamp_ns, informative)) {
-    auto made = make_request(image, step);
-    if (made) {
-      schedule.sent(made->seq, made->stamp_ns);
-      request = std::move(*made);
-    } else {
-      log::warning("{}: frame {} is not sent: {}", options.client_id, image.stamp_ns, made.error().message);
-    }
-  }
+  ask_if_due(image, points, *placed);
   return frame;
 }
 
@@ -192,8 +228,21 @@ Status Engine::add_imu(const ImuSample& sample) {
   return impl_->imu->add(sample);
 }
 
+Status Engine::add_odometry(const OdometrySample& sample) {
+  if (!impl_->external)
+    return fail("{}: odometry from outside, but the local method is another; set it to external",
+                impl_->options.client_id);
+  return impl_->external->add(sample);
+}
+
 Result<FrameResult> Engine::add_depth(const DepthImage& image) {
-  return impl_->add_depth(image);
+  return impl_->add(image, nullptr);
+}
+
+Result<FrameResult> Engine::add_points(StampNs stamp_ns, const Cloud& cloud_sensor) {
+  const EngineOptions& o = impl_->options;
+  const Cloud seen = within_view(cloud_sensor, o.camera, o.min_range_m, o.max_range_m);
+  return impl_->add(depth_of_points(seen, o.camera, stamp_ns), &seen);
 }
 
 std::optional<SpotRequest> Engine::take_request() {

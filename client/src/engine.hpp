@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/cloud.hpp"
 #include "common/protocol/spot.hpp"
 
 namespace liloc {
 
-enum class LocalMethod { cloud, inertial, dead_reckoning };
+/// external: somebody else keeps the odometry (`add_odometry`); the engine registers nothing locally.
+enum class LocalMethod { cloud, inertial, dead_reckoning, external };
 [[nodiscard]] Result<LocalMethod> local_method_from(std::string_view name);
 
 struct EngineOptions {
@@ -26,13 +28,21 @@ struct EngineOptions {
   double still_seconds = 0;          ///< the device stands still for so long at the start
   bool cold = false;                 ///< each request is to be answered on its own
   std::uint64_t seed = 1;
+  Pose T_base_sensor = Pose::Identity();  ///< with external odometry: the sensor on what the odometry moves
+};
+
+/// A pose by the odometry of somebody else, in a frame of its own that never jumps.
+struct OdometrySample {
+  StampNs stamp_ns = 0;
+  Pose T_odom_base = Pose::Identity();
+  std::optional<Matrix6d> covariance;  ///< of the pose, [rad; m]; its growth bounds the motion's error
 };
 
 /// What a frame brought; a row of local.csv.
 struct FrameResult {
   StampNs stamp_ns = 0;
   bool informative = true;
-  std::string method;  ///< how its pose was found: "first", "icp", "ransac", "inertial", "guess"
+  std::string method;  ///< how its pose was found: "first", "icp", "ransac", "inertial", "external", "guess"
   bool converged = true;
   double latency_ms = 0;
   Pose T_odom_sensor = Pose::Identity();
@@ -53,6 +63,11 @@ class Engine {
   [[nodiscard]] Status add_imu(const ImuSample& sample);
   /// Errors: wrong size, a stamp that is not newer than the last; the frame is then ignored.
   [[nodiscard]] Result<FrameResult> add_depth(const DepthImage& image);
+  /// A cloud in place of an image, in the sensor frame; the camera is then the part of the view that is used,
+  /// best with about as many pixels as the cloud has points. Errors: a stamp that is not newer than the last.
+  [[nodiscard]] Result<FrameResult> add_points(StampNs stamp_ns, const Cloud& cloud_sensor);
+  /// Errors: the method is not external, not finite, a stamp that is not newer than the last.
+  [[nodiscard]] Status add_odometry(const OdometrySample& sample);
   /// The request that the last frame made due, if any; taken once.
   [[nodiscard]] std::optional<SpotRequest> take_request();
   /// The requests that have stayed without an answer for too long since the last call, by seq.

@@ -13,10 +13,6 @@ Pose to_public(const liloc::Pose& T) {
   return {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}};
 }
 
-Result<liloc::Pose> to_domain(const Pose& T, std::string_view what) {
-  return valid_pose(Eigen::Vector3d(T.translation_m.data()), Eigen::Vector4d(T.rotation_xyzw.data()), what);
-}
-
 LocalMethod to_domain(Local local) {
   switch (local) {
     case Local::cloud:
@@ -25,6 +21,8 @@ LocalMethod to_domain(Local local) {
       return LocalMethod::inertial;
     case Local::dead_reckoning:
       return LocalMethod::dead_reckoning;
+    case Local::external:
+      return LocalMethod::external;
   }
   return LocalMethod::cloud;
 }
@@ -53,14 +51,22 @@ Status check_ranges(const Options& o) {
     return fail("options.reply_timeout_ms is {}; must be 100 or more", o.reply_timeout_ms);
   if (!(o.still_seconds >= 0 && o.still_seconds <= 600))
     return fail("options.still_seconds is {}; must be 0..600", o.still_seconds);
-  if (o.local != Local::cloud && !o.T_imu_sensor)
+  if ((o.local == Local::inertial || o.local == Local::dead_reckoning) && !o.T_imu_sensor)
     return fail("options.local needs an IMU: set options.T_imu_sensor, or choose Local::cloud");
   if (o.queue_frames < 1 || o.queue_frames > 100)
     return fail("options.queue_frames is {}; must be 1..100", o.queue_frames);
+  if (!(o.cpu_share >= 0.02 && o.cpu_share <= 1))
+    return fail("options.cpu_share is {}; must be 0.02..1", o.cpu_share);
+  if (o.T_base_sensor && o.local != Local::external)
+    return fail("options.T_base_sensor is for odometry from outside: set options.local to Local::external");
   return {};
 }
 
 }  // namespace
+
+Result<liloc::Pose> to_domain(const Pose& T, std::string_view what) {
+  return valid_pose(Eigen::Vector3d(T.translation_m.data()), Eigen::Vector4d(T.rotation_xyzw.data()), what);
+}
 
 Result<SessionOptions> to_session(const Options& o) {
   SessionOptions s;
@@ -84,6 +90,12 @@ Result<SessionOptions> to_session(const Options& o) {
     if (!T) return tl::unexpected(T.error());
     s.engine.T_imu_sensor = *T;
   }
+  if (o.T_base_sensor) {
+    const auto T = to_domain(*o.T_base_sensor, "options.T_base_sensor");
+    if (!T) return tl::unexpected(T.error());
+    s.engine.T_base_sensor = *T;
+  }
+  s.cpu_share = o.cpu_share;
   s.engine.still_seconds = o.still_seconds;
   s.engine.cold = o.cold;
   s.engine.seed = o.seed;
@@ -119,10 +131,10 @@ Reply to_public(const SpotReply& reply) {
 }
 
 Stats to_public(const SessionStats& s) {
-  return {s.frames,      s.frames_dropped,   s.frames_refused,  s.frames_uninformative,
-          s.imu_refused, s.requests,         s.requests_unsent, s.requests_unanswered,
-          s.replies,     s.replies_verified, s.replies_refused, s.frame_ms_median,
-          s.frame_ms_p99};
+  return {s.frames,       s.frames_dropped,   s.frames_refused,   s.frames_uninformative,
+          s.imu_refused,  s.requests,         s.requests_unsent,  s.requests_unanswered,
+          s.replies,      s.replies_verified, s.replies_refused,  s.frame_ms_median,
+          s.frame_ms_p99, s.frames_skipped,   s.odometry_refused, s.cpu_s};
 }
 
 }  // namespace liloc::client

@@ -7,6 +7,8 @@ namespace liloc::client {
 
 /// Errors name the option, its value and its range.
 [[nodiscard]] Result<SessionOptions> to_session(const Options& options);
+/// Error: not a pose; `what` names it.
+[[nodiscard]] Result<liloc::Pose> to_domain(const Pose& T, std::string_view what);
 [[nodiscard]] PoseUpdate to_public(const FrameResult& frame, Tracking tracking, bool connected);
 [[nodiscard]] Reply to_public(const SpotReply& reply);
 [[nodiscard]] Stats to_public(const SessionStats& stats);

@@ -1,11 +1,13 @@
 #include "client/src/session.hpp"
 
 #include <algorithm>
+#include <condition_variable>
 #include <deque>
 #include <map>
 #include <mutex>
 #include <thread>
 
+#include "client/src/frame_budget.hpp"
 #include "client/src/trace.hpp"
 #include "common/base/bounded_queue.hpp"
 #include "common/base/log.hpp"
@@ -16,6 +18,15 @@ namespace {
 constexpr std::size_t kMostImuSamples = 4000;  // 20 s at 200 Hz, while no frame comes
 constexpr std::size_t kLatencies = 512;
 constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits
+
+constexpr auto kOdometryWait = std::chrono::milliseconds(60);  // a frame for the odometry of its stamp
+
+/// An image, or a cloud in its place.
+struct SensorFrame {
+  DepthImage image;  ///< its stamp alone, of a cloud
+  bool is_cloud = false;
+  Cloud points_sensor;
+};
 
 const char* name_of(Tracking tracking) {
   switch (tracking) {
@@ -43,13 +54,18 @@ struct Session::Impl {
       : options(std::move(o)),
         callbacks(std::move(c)),
         engine(options.engine),
+        budget(options.cpu_share),
         frames(options.queue_frames),
         outbox(kOutbox) {}
 
   void start();
-  void process(const DepthImage& image);
+  [[nodiscard]] Status push(SensorFrame frame);
+  void process(const SensorFrame& input);
+  [[nodiscard]] bool skips(StampNs stamp_ns);
+  void wait_for_odometry(StampNs stamp_ns);
+  [[nodiscard]] Result<FrameResult> add(const SensorFrame& input);
   Tracking note(const FrameResult& frame);
-  void hand_over_imu();
+  void hand_over_samples();
   void send(const SpotRequest& request);
   void trace_request(const SpotRequest& request);
 
@@ -62,15 +78,21 @@ struct Session::Impl {
   Status trace_status;
   std::map<std::uint64_t, SpotRequest> asked;  ///< without their clouds
 
+  FrameBudget budget;     ///< of the registration thread
+  bool skipping = false;  ///< likewise
+
   mutable std::mutex state_mutex;  ///< all below; held for moments
+  std::condition_variable odometry_came;
   std::deque<ImuSample> imu;
+  std::deque<OdometrySample> odometry;
+  StampNs newest_odometry_ns = 0;
   std::optional<FrameResult> newest;
   Tracking tracking = Tracking::searching;
   SessionStats stats;
   std::deque<double> latencies_ms;
   bool stopped = false;
 
-  BoundedQueue<DepthImage> frames;
+  BoundedQueue<SensorFrame> frames;
   BoundedQueue<SpotRequest> outbox;
   std::jthread registration, sending;  ///< last: they end before what they use
 };
@@ -80,21 +102,59 @@ void Session::Impl::start() {
     while (auto request = outbox.pop(stop)) send(*request);
   });
   registration = std::jthread([this](const std::stop_token& stop) {
-    while (auto image = frames.pop(stop)) process(*image);
+    while (auto frame = frames.pop(stop)) process(*frame);
   });
 }
 
-void Session::Impl::hand_over_imu() {
-  std::deque<ImuSample> samples;
+void Session::Impl::hand_over_samples() {
+  std::deque<ImuSample> inertial;
+  std::deque<OdometrySample> poses;
   {
     const std::scoped_lock lock(state_mutex);
-    samples.swap(imu);
+    inertial.swap(imu);
+    poses.swap(odometry);
   }
-  std::uint64_t refused = 0;
-  for (const ImuSample& sample : samples)
-    if (const Status ok = engine.add_imu(sample); !ok && ++refused == 1) log::warning("{}", ok.error().message);
+  std::uint64_t imu_refused = 0, odometry_refused = 0;
+  for (const ImuSample& sample : inertial)
+    if (const Status ok = engine.add_imu(sample); !ok && ++imu_refused == 1)
+      log::warning("{}", ok.error().message);
+  for (const OdometrySample& sample : poses)
+    if (const Status ok = engine.add_odometry(sample); !ok && ++odometry_refused == 1)
+      log::warning("{}", ok.error().message);
   const std::scoped_lock lock(state_mutex);
-  stats.imu_refused += refused;
+  stats.imu_refused += imu_refused;
+  stats.odometry_refused += odometry_refused;
+}
+
+/// A pose between two samples is better than one guessed beyond the newest.
+void Session::Impl::wait_for_odometry(StampNs stamp_ns) {
+  std::unique_lock lock(state_mutex);
+  if (newest_odometry_ns == 0) return;
+  odometry_came.wait_for(lock, kOdometryWait, [&] { return stopped || newest_odometry_ns >= stamp_ns; });
+}
+
+bool Session::Impl::skips(StampNs stamp_ns) {
+  const bool skip = !budget.admit(stamp_ns);
+  if (skip && !skipping)
+    log::warning("{}: a frame needs {:.0f} ms of this computer: some frames are left out",
+                 options.engine.client_id, budget.interval_ms());
+  skipping = skipping || skip;
+  if (!skip) return false;
+  const std::scoped_lock lock(state_mutex);
+  ++stats.frames_skipped;
+  return true;
+}
+
+Result<FrameResult> Session::Impl::add(const SensorFrame& input) {
+  const Stopwatch watch;
+  const double cpu_before_ms = thread_cpu_ms();
+  auto frame = input.is_cloud ? engine.add_points(input.image.stamp_ns, input.points_sensor)
+                              : engine.add_depth(input.image);
+  const double cpu_ms = thread_cpu_ms() - cpu_before_ms;
+  if (frame) budget.spent(watch.elapsed_ms(), cpu_ms);
+  const std::scoped_lock lock(state_mutex);
+  stats.cpu_s += 1e-3 * cpu_ms;
+  return frame;
 }
 
 void Session::Impl::trace_request(const SpotRequest& request) {
@@ -120,14 +180,16 @@ Tracking Session::Impl::note(const FrameResult& frame) {
   return now;
 }
 
-void Session::Impl::process(const DepthImage& image) {
+void Session::Impl::process(const SensorFrame& input) {
+  if (skips(input.image.stamp_ns)) return;
+  if (options.engine.local == LocalMethod::external) wait_for_odometry(input.image.stamp_ns);
   std::optional<SpotRequest> request;
   Result<FrameResult> frame = fail("not processed");
   Tracking now = Tracking::searching;
   {
     const std::scoped_lock lock(engine_mutex);
-    hand_over_imu();
-    frame = engine.add_depth(image);
+    hand_over_samples();
+    frame = add(input);
     if (frame) {
       now = note(*frame);
       request = engine.take_request();
@@ -181,14 +243,41 @@ Result<std::unique_ptr<Session>> Session::create(SessionOptions options, Session
   return std::unique_ptr<Session>(new Session(std::move(impl)));
 }
 
+Status Session::Impl::push(SensorFrame frame) {
+  {
+    const std::scoped_lock lock(state_mutex);
+    if (stopped) return fail("{}: stopped: no more frames are taken", options.engine.client_id);
+  }
+  if (!frames.push(std::move(frame))) return {};
+  const std::scoped_lock lock(state_mutex);
+  ++stats.frames_dropped;
+  return {};
+}
+
 Status Session::push_depth(DepthImage image) {
+  return impl_->push({std::move(image), false, {}});
+}
+
+Status Session::push_points(StampNs stamp_ns, Cloud cloud_sensor) {
+  SensorFrame frame;
+  frame.image.stamp_ns = stamp_ns;
+  frame.is_cloud = true;
+  frame.points_sensor = std::move(cloud_sensor);
+  return impl_->push(std::move(frame));
+}
+
+Status Session::push_odometry(const OdometrySample& sample) {
   {
     const std::scoped_lock lock(impl_->state_mutex);
-    if (impl_->stopped) return fail("{}: stopped: no more frames are taken", impl_->options.engine.client_id);
+    if (impl_->options.engine.local != LocalMethod::external)
+      return fail("{}: odometry from outside, but options.local is another; set it to external",
+                  impl_->options.engine.client_id);
+    if (impl_->stopped) return fail("{}: stopped: no more samples are taken", impl_->options.engine.client_id);
+    if (impl_->odometry.size() >= kMostImuSamples) impl_->odometry.pop_front();
+    impl_->odometry.push_back(sample);
+    impl_->newest_odometry_ns = std::max(impl_->newest_odometry_ns, sample.stamp_ns);
   }
-  if (!impl_->frames.push(std::move(image))) return {};
-  const std::scoped_lock lock(impl_->state_mutex);
-  ++impl_->stats.frames_dropped;
+  impl_->odometry_came.notify_all();
   return {};
 }
 
@@ -238,6 +327,7 @@ Status Session::stop() {
     const std::scoped_lock lock(impl_->state_mutex);
     if (std::exchange(impl_->stopped, true)) return {};
   }
+  impl_->odometry_came.notify_all();
   impl_->frames.close();
   if (impl_->registration.joinable()) impl_->registration.join();
   impl_->outbox.close();

@@ -12,6 +12,7 @@ struct SessionOptions {
   EngineOptions engine;
   std::size_t queue_frames = 4;
   std::filesystem::path trace_folder;  ///< empty: no trace
+  double cpu_share = 1;                ///< of one core for the registration; frames are left out to keep it
 };
 
 struct SessionCallbacks {
@@ -26,6 +27,9 @@ struct SessionStats {
   std::uint64_t requests = 0, requests_unsent = 0, requests_unanswered = 0;
   std::uint64_t replies = 0, replies_verified = 0, replies_refused = 0;
   double frame_ms_median = 0, frame_ms_p99 = 0;
+  std::uint64_t frames_skipped = 0;  ///< left out to stay within the budget
+  std::uint64_t odometry_refused = 0;
+  double cpu_s = 0;  ///< of the registration
 };
 
 /// All calls are safe from any thread; none waits for the network.
@@ -40,6 +44,11 @@ class Session {
 
   /// Queues; the oldest frame makes room when the queue is full. Error: stopped.
   [[nodiscard]] Status push_depth(DepthImage image);
+  /// A cloud in place of an image; the same queue. Error: stopped.
+  [[nodiscard]] Status push_points(StampNs stamp_ns, Cloud cloud_sensor);
+  /// Handed to the engine before the next frame, which waits a moment for it. Errors: the local method is not
+  /// external, stopped.
+  [[nodiscard]] Status push_odometry(const OdometrySample& sample);
   /// Handed to the engine before the next frame. Errors: no IMU in the options, stopped.
   [[nodiscard]] Status push_imu(const ImuSample& sample);
   /// Waits at most for the frame in work.

@@ -1,0 +1,49 @@
+#pragma once
+#include <deque>
+#include <optional>
+
+#include "client/src/odometry.hpp"
+
+namespace liloc {
+
+struct ExternalOdometryOptions {
+  Pose T_base_sensor = Pose::Identity();       ///< where the depth sensor sits on what the odometry moves
+  StampNs keep_ns = from_ms(10'000);           ///< memory bound
+  StampNs gap_ns = from_ms(1000);              ///< without samples for longer, a new segment starts
+  StampNs reach_ns = from_ms(100);             ///< how far beyond the newest sample a pose is still guessed
+  double jump_m = 0.05, jump_rad = 0.05;       ///< a step beyond this ...
+  double speed_m_s = 5, turn_rate_rad_s = 10;  ///< ... and beyond what these allow is a jump: a new segment
+};
+
+/// Odometry that somebody else keeps (wheels, a legged robot's own estimator): poses at the frames' stamps, and
+/// segments within which it holds together. Not thread-safe.
+class ExternalOdometry {
+ public:
+  explicit ExternalOdometry(const ExternalOdometryOptions& options) : options_(options) {}
+
+  /// Errors: not finite, a stamp not newer than the last; the sample is then ignored.
+  [[nodiscard]] Status add(const OdometrySample& sample);
+  /// Where the sensor is at a frame's stamp: "external" between two samples, "guess" a little beyond the newest
+  /// or where there is none near; the pose is then the last one and `placed` is false.
+  [[nodiscard]] OdometryStep step(StampNs stamp_ns);
+  [[nodiscard]] bool placed() const { return placed_; }
+  /// The growth of the covariance is counted from the last step on.
+  void anchor() { anchor_ = last_covariance_; }
+
+ private:
+  struct Entry {
+    OdometrySample sample;
+    std::uint32_t segment;
+  };
+  [[nodiscard]] bool continues(const OdometrySample& from, const OdometrySample& to) const;
+  void place(const Entry& entry, const Pose& T_odom_base, OdometryStep& step);
+
+  ExternalOdometryOptions options_;
+  std::deque<Entry> entries_;  ///< by rising stamp
+  Pose T_odom_last_ = Pose::Identity();
+  std::uint32_t last_segment_ = 0;
+  bool placed_ = false;
+  std::optional<Matrix6d> last_covariance_, anchor_;
+};
+
+}  // namespace liloc

@@ -1,0 +1,41 @@
+#include "client/src/frame_budget.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <vector>
+
+namespace liloc {
+namespace {
+
+constexpr std::size_t kRecent = 31, kFewest = 5;
+constexpr double kSlack = 0.9;  // frames do not come at even distances
+
+}  // namespace
+
+double FrameBudget::interval_ms() const {
+  if (needed_ms_.size() < kFewest) return 0;
+  std::vector<double> needed(needed_ms_.begin(),
+                             needed_ms_.end());  // the median: one search by features is no trend
+  const auto middle = needed.begin() + static_cast<std::ptrdiff_t>(needed.size() / 2);
+  std::nth_element(needed.begin(), middle, needed.end());
+  return *middle;
+}
+
+bool FrameBudget::admit(StampNs stamp_ns) {
+  if (last_ns_ && stamp_ns > *last_ns_ && to_ms(stamp_ns - *last_ns_) < kSlack * interval_ms()) return false;
+  if (!last_ns_ || stamp_ns > *last_ns_) last_ns_ = stamp_ns;
+  return true;
+}
+
+void FrameBudget::spent(double wall_ms, double cpu_ms) {
+  needed_ms_.push_back(std::max(wall_ms, cpu_ms / cpu_share_));
+  if (needed_ms_.size() > kRecent) needed_ms_.pop_front();
+}
+
+double thread_cpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace liloc

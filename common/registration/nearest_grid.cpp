@@ -39,20 +39,24 @@ std::int32_t& NearestGrid::cell_at(const Eigen::Vector3i& cell) {
 }
 
 void NearestGrid::stamp(const std::vector<Eigen::Vector3f>& points, std::int32_t index, float cell, float reach) {
-  const Eigen::Vector3f p = points[static_cast<std::size_t>(index)];
-  const Eigen::Vector3i lo = ((p - origin_).array() * inverse_ - reach * inverse_).cast<int>().max(0);
-  const Eigen::Vector3i hi =
-      ((p - origin_).array() * inverse_ + reach * inverse_).cast<int>().min(extent_.cast<int>().array() - 1);
+  const Eigen::Vector3f q = points[static_cast<std::size_t>(index)] - origin_;
+  const Eigen::Vector3i lo = ((q.array() - reach) * inverse_).cast<int>().max(0);
+  const Eigen::Vector3i hi = ((q.array() + reach) * inverse_).cast<int>().min(extent_.cast<int>().array() - 1);
   const float squared_reach = reach * reach;
-  for (int z = lo.z(); z <= hi.z(); ++z)
-    for (int y = lo.y(); y <= hi.y(); ++y)
+  for (int z = lo.z(); z <= hi.z(); ++z) {
+    const float dz = (static_cast<float>(z) + 0.5F) * cell - q.z();
+    for (int y = lo.y(); y <= hi.y(); ++y) {
+      const float dy = (static_cast<float>(y) + 0.5F) * cell - q.y(), dyz = dy * dy + dz * dz;
+      if (dyz > squared_reach) continue;
       for (int x = lo.x(); x <= hi.x(); ++x) {
-        const Eigen::Vector3f centre = origin_ + (Eigen::Vector3f(x, y, z).array() + 0.5F).matrix() * cell;
-        const float squared = (centre - p).squaredNorm();
+        const float dx = (static_cast<float>(x) + 0.5F) * cell - q.x(), squared = dx * dx + dyz;
         if (squared > squared_reach) continue;
         std::int32_t& held = cell_at({x, y, z});
+        const Eigen::Vector3f centre = origin_ + Eigen::Vector3f(dx, dy, dz) + q;
         if (held == kNone || squared < (centre - points[static_cast<std::size_t>(held)]).squaredNorm()) held = index;
       }
+    }
+  }
 }
 
 }  // namespace liloc

@@ -35,7 +35,7 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
 Surfaces::Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m)
     : cloud(std::move(cloud_map)),
       coarse(voxel_downsample(cloud, 2 * voxel_size_m)),
-      nearest(cloud.points, voxel_size_m, 1.6 * voxel_size_m),
+      nearest(cloud.points, voxel_size_m, 1.3 * voxel_size_m),
       nearest_coarse(coarse.points, 3 * voxel_size_m, 0.32),
       views_(std::move(views)) {}
 

@@ -127,6 +127,7 @@ Result<std::vector<Row>> run_site(std::uint64_t seed, const Options& options) {
       SpotRequest request = make_request(device, frame.image, frame.T_map_sensor, options, rng);
       request.T_odom_sensor = odometry.next(frame.T_map_sensor, rng);
       const double overlap = overlap_at(room, frame.image, device, frame.T_map_sensor);
+      room.prepare();
       for (const bool cold : {true, false}) {
         request.cold = cold;
         request.seq = ++seq;

@@ -145,6 +145,7 @@ class Lockstep {
       while (!device->held.empty()) {
         const SpotRequest& request = device->held.front();
         if (!all_seen(request.stamp_ns) && now_ns < request.stamp_ns + kHold_ns) break;
+        cloud_.prepare();  // which the server does beside its requests
         const SpotReply reply = localizer_.locate(request);
         device->engine.add_reply(reply);
         device->trace.on_reply(reply, request);

@@ -1,9 +1,14 @@
 #include "server/app/server.hpp"
 
+#include <condition_variable>
+#include <mutex>
+
 #include "common/base/log.hpp"
 
 namespace liloc {
 namespace {
+
+constexpr auto kPreparePeriod = std::chrono::milliseconds(200);
 
 GlobalCloudOptions cloud_options(const ServerOptions& options) {
   GlobalCloudOptions cloud;
@@ -32,6 +37,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site
   std::unique_ptr<Server> server(new Server(options, std::move(site)));
   if (auto opened = server->open(options); !opened) return tl::unexpected(opened.error());
   server->dispatcher_->start();
+  server->preparer_ = std::jthread([raw = server.get()](const std::stop_token& stop) { raw->keep_prepared(stop); });
   return server;
 }
 
@@ -82,7 +88,20 @@ Status Server::open_streams(const ServerOptions& options) {
   return {};
 }
 
+/// Builds the room's indices beside the requests, as long as there is anyone who might ask.
+void Server::keep_prepared(const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  while (!stop.stop_requested()) {
+    if (service_->clients() > 0) global_cloud_.prepare();
+    wake.wait_for(lock, stop, kPreparePeriod, [] { return false; });
+  }
+}
+
 void Server::stop() {
+  preparer_.request_stop();
+  if (preparer_.joinable()) preparer_.join();
   if (service_) service_->stop();
   if (dispatcher_) dispatcher_->stop();
 }

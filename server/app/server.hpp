@@ -2,6 +2,7 @@
 // The server put together: ceiling streams in, global cloud, localizer, clients' requests answered.
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "common/wire/status.hpp"
 #include "server/app/options.hpp"
@@ -27,6 +28,7 @@ class Server {
   [[nodiscard]] Status open(const ServerOptions& options);
   [[nodiscard]] Status open_streams(const ServerOptions& options);
   void log_status() const;
+  void keep_prepared(const std::stop_token& stop);
 
   const std::string server_id_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -37,6 +39,7 @@ class Server {
   std::unique_ptr<Ingest> ingest_;
   std::unique_ptr<Service> service_;
   std::unique_ptr<wire::Dispatcher> dispatcher_;  // its thread uses all of the above: it goes first
+  std::jthread preparer_;
 };
 
 }  // namespace liloc

@@ -121,6 +121,22 @@ Result<std::shared_ptr<const Snapshot>> GlobalCloud::nearest(StampNs stamp_ns) {
   return snapshots_.back();
 }
 
+void GlobalCloud::prepare() {
+  std::shared_ptr<const StitchedRoom> room;
+  {
+    const std::scoped_lock lock(mutex_);
+    StampNs newest = 0;
+    for (const auto& frames : frames_)
+      if (!frames.empty()) newest = std::max(newest, frames.back()->stamp_ns());
+    std::vector<Frame> frames;
+    for (const auto& held : frames_)
+      if (!held.empty() && held.back()->stamp_ns() > newest - 2 * options_.match_ns) frames.push_back(held.back());
+    if (frames.empty()) return;
+    room = room_of(frames);
+  }
+  if (!room->surfaces()->cloud.empty()) (void)room->surfaces()->field_fine();
+}
+
 bool GlobalCloud::settled(StampNs stamp_ns) const {
   bool any = false, passed = true;
   for (std::size_t lidar = 0; lidar < frames_.size(); ++lidar) {

@@ -40,6 +40,10 @@ class GlobalCloud {
   /// Error: no LiDAR has one. The snapshot's own stamp is that of its nearest frame.
   [[nodiscard]] Result<std::shared_ptr<const Snapshot>> nearest(StampNs stamp_ns);
 
+  /// Builds what the next snapshot will need of the room as it is now, so that no request has to wait for it. Costs
+  /// nothing while the room does not change. Called by a thread of its own.
+  void prepare();
+
   /// Waits until `nearest` has an answer for the stamp, or newer frames show that it never will, or `limit` is
   /// over. At 6 Hz the nearest frame of a fresh request is often still to come.
   void await(StampNs stamp_ns, std::chrono::milliseconds limit);

@@ -1,5 +1,6 @@
 #include "client/python/arrays.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace liloc::client::python {
@@ -99,6 +100,31 @@ DepthArray depth_of(const py::object& depth) {
   if (array.ndim() != 2)
     throw py::value_error("depth has shape " + shape_of(array) + "; must be height x width");
   return DepthArray::ensure(array);
+}
+
+PointArray points_of(const py::object& points) {
+  auto array = PointArray::ensure(points);
+  if (!array) {
+    PyErr_Clear();
+    throw py::type_error("points must be an N x 3 array of metres");
+  }
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw py::value_error("points has shape " + shape_of(array) + "; must be N x 3");
+  return array;
+}
+
+std::optional<std::array<double, 36>> covariance_of(const py::object& covariance) {
+  if (covariance.is_none()) return {};
+  const auto array = Array::ensure(covariance);
+  if (!array) {
+    PyErr_Clear();
+    throw py::type_error("covariance must be a 6x6 matrix of numbers");
+  }
+  if (array.ndim() != 2 || array.shape(0) != 6 || array.shape(1) != 6)
+    throw py::value_error("covariance has shape " + shape_of(array) + "; must be 6x6");
+  std::array<double, 36> values{};
+  std::copy_n(array.data(), values.size(), values.begin());
+  return values;
 }
 
 std::vector<Imu> imu_of(const py::object& stamps_ns, const py::object& samples) {

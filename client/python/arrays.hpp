@@ -3,7 +3,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "client/include/liloc/client.hpp"
@@ -21,6 +23,13 @@ using DepthArray = py::array_t<std::uint16_t, py::array::c_style>;
 /// uint16 of HxW, copied only when it is not contiguous. Raises TypeError for another type: metres as float
 /// would become garbage silently.
 [[nodiscard]] DepthArray depth_of(const py::object& depth);
+
+/// N x 3 of any real type, as float32 in rows. Raises ValueError for another shape.
+using PointArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
+[[nodiscard]] PointArray points_of(const py::object& points);
+
+/// 6x6, or nothing for None.
+[[nodiscard]] std::optional<std::array<double, 36>> covariance_of(const py::object& covariance);
 
 struct Imu {
   std::int64_t stamp_ns = 0;

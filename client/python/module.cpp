@@ -17,7 +17,8 @@ Local local_of(const std::string& name) {
   if (name == "cloud") return Local::cloud;
   if (name == "inertial") return Local::inertial;
   if (name == "dead_reckoning") return Local::dead_reckoning;
-  throw py::value_error("local is '" + name + "'; must be 'cloud', 'inertial' or 'dead_reckoning'");
+  if (name == "external") return Local::external;
+  throw py::value_error("local is '" + name + "'; must be 'cloud', 'inertial', 'dead_reckoning' or 'external'");
 }
 
 std::string text_of(const PoseUpdate& update) {
@@ -55,7 +56,10 @@ void declare_values(py::module_& module) {
       .def_readonly("replies_verified", &Stats::replies_verified)
       .def_readonly("replies_refused", &Stats::replies_refused)
       .def_readonly("frame_ms_median", &Stats::frame_ms_median)
-      .def_readonly("frame_ms_p99", &Stats::frame_ms_p99);
+      .def_readonly("frame_ms_p99", &Stats::frame_ms_p99)
+      .def_readonly("frames_skipped", &Stats::frames_skipped)
+      .def_readonly("odometry_refused", &Stats::odometry_refused)
+      .def_readonly("cpu_s", &Stats::cpu_s);
 }
 
 void declare_answers(py::module_& module) {
@@ -84,10 +88,11 @@ void declare_answers(py::module_& module) {
 }
 
 std::shared_ptr<PythonClient> make_client(Options options, const std::string& local,
-                                          const py::object& T_imu_sensor, const py::object& on_pose,
-                                          const py::object& on_reply) {
+                                          const py::object& T_imu_sensor, const py::object& T_base_sensor,
+                                          const py::object& on_pose, const py::object& on_reply) {
   options.local = local_of(local);
   if (!T_imu_sensor.is_none()) options.T_imu_sensor = from_matrix(T_imu_sensor, "T_imu_sensor");
+  if (!T_base_sensor.is_none()) options.T_base_sensor = from_matrix(T_base_sensor, "T_base_sensor");
   auto client = std::make_shared<PythonClient>(options, callback_of(on_pose, "on_pose"),
                                                callback_of(on_reply, "on_reply"));
   stop_at_exit(client);
@@ -101,8 +106,8 @@ void declare_client(py::module_& module) {
                        std::vector<std::string> peers, double min_range_m, double max_range_m,
                        double voxel_size_m, int interval_ms, int reply_timeout_ms, const std::string& local,
                        const py::object& T_imu_sensor, double still_seconds, bool cold, std::uint64_t seed,
-                       std::size_t queue_frames, std::string trace_folder, const py::object& on_pose,
-                       const py::object& on_reply) {
+                       std::size_t queue_frames, std::string trace_folder, const py::object& T_base_sensor,
+                       double cpu_share, const py::object& on_pose, const py::object& on_reply) {
              Options o;
              o.id = std::move(id);
              o.camera = camera;
@@ -119,17 +124,21 @@ void declare_client(py::module_& module) {
              o.seed = seed;
              o.queue_frames = queue_frames;
              o.trace_folder = std::move(trace_folder);
-             return make_client(std::move(o), local, T_imu_sensor, on_pose, on_reply);
+             o.cpu_share = cpu_share;
+             return make_client(std::move(o), local, T_imu_sensor, T_base_sensor, on_pose, on_reply);
            }),
            "id"_a, "camera"_a, py::kw_only(), "domain"_a = d.domain,
            "network_interface"_a = d.network_interface, "peers"_a = d.peers, "min_range_m"_a = d.min_range_m,
            "max_range_m"_a = d.max_range_m, "voxel_size_m"_a = d.voxel_size_m, "interval_ms"_a = d.interval_ms,
            "reply_timeout_ms"_a = d.reply_timeout_ms, "local"_a = "cloud", "T_imu_sensor"_a = py::none(),
            "still_seconds"_a = d.still_seconds, "cold"_a = d.cold, "seed"_a = d.seed,
-           "queue_frames"_a = d.queue_frames, "trace_folder"_a = d.trace_folder, "on_pose"_a = py::none(),
-           "on_reply"_a = py::none())
+           "queue_frames"_a = d.queue_frames, "trace_folder"_a = d.trace_folder, "T_base_sensor"_a = py::none(),
+           "cpu_share"_a = d.cpu_share, "on_pose"_a = py::none(), "on_reply"_a = py::none())
       .def("push_depth", &PythonClient::push_depth, "depth"_a, "stamp_ns"_a)
       .def("push_imu", &PythonClient::push_imu, "stamps_ns"_a, "samples"_a)
+      .def("push_points", &PythonClient::push_points, "points"_a, "stamp_ns"_a)
+      .def("push_odometry", &PythonClient::push_odometry, "stamp_ns"_a, "T_odom_base"_a,
+           "covariance"_a = py::none())
       .def("newest", &PythonClient::newest)
       .def("wait", &PythonClient::wait, "newer_than_ns"_a = 0, "timeout_s"_a = 1.0)
       .def("stats", &PythonClient::stats)

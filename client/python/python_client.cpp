@@ -126,6 +126,28 @@ void PythonClient::push_imu(const py::object& stamps_ns, const py::object& sampl
   check(pushed);
 }
 
+void PythonClient::push_points(const py::object& points, std::int64_t stamp_ns) {
+  const PointArray xyz = points_of(points);
+  Outcome<Taken> pushed = Taken{};
+  {
+    const py::gil_scoped_release unlocked;
+    pushed = client_->push_points(xyz.data(), static_cast<std::size_t>(xyz.shape(0)), stamp_ns);
+  }
+  check(pushed);
+}
+
+void PythonClient::push_odometry(std::int64_t stamp_ns, const py::object& T_odom_base,
+                                 const py::object& covariance) {
+  const Pose T = from_matrix(T_odom_base, "T_odom_base");
+  const auto known = covariance_of(covariance);
+  Outcome<Taken> pushed = Taken{};
+  {
+    const py::gil_scoped_release unlocked;
+    pushed = client_->push_odometry(stamp_ns, T, known);
+  }
+  check(pushed);
+}
+
 PoseUpdate PythonClient::newest() const {
   const py::gil_scoped_release unlocked;
   return client_->newest();

@@ -36,6 +36,8 @@ class PythonClient {
 
   void push_depth(const py::object& depth, std::int64_t stamp_ns);
   void push_imu(const py::object& stamps_ns, const py::object& samples);
+  void push_points(const py::object& points, std::int64_t stamp_ns);
+  void push_odometry(std::int64_t stamp_ns, const py::object& T_odom_base, const py::object& covariance);
   [[nodiscard]] PoseUpdate newest() const;
   [[nodiscard]] Stats stats() const;
   /// Waits for a frame newer than `stamp_ns`; empty when none was processed in time. Ctrl-C ends the wait.

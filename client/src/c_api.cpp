@@ -246,6 +246,26 @@ liloc_status liloc_client_push_imu(liloc_client* client, int64_t stamp_ns, const
   });
 }
 
+liloc_status liloc_client_push_points(liloc_client* client, const float* xyz, size_t count, int64_t stamp_ns) {
+  return guarded([&] {
+    if (client == nullptr) return refuse_no_client();
+    if (xyz == nullptr) return refuse_null("xyz");
+    return push(*client, [&](Client& to) { return to.push_points(xyz, count, stamp_ns); });
+  });
+}
+
+liloc_status liloc_client_push_odometry(liloc_client* client, int64_t stamp_ns, const liloc_pose* T_odom_base,
+                                        const double* covariance) {
+  return guarded([&] {
+    if (client == nullptr) return refuse_no_client();
+    if (T_odom_base == nullptr) return refuse_null("T_odom_base");
+    std::optional<std::array<double, 36>> known;
+    if (covariance != nullptr) std::copy_n(covariance, known.emplace().size(), known->begin());
+    return push(*client,
+                [&](Client& to) { return to.push_odometry(stamp_ns, c_api::from_c(*T_odom_base), known); });
+  });
+}
+
 liloc_status liloc_client_newest(const liloc_client* client, liloc_pose_update* update, size_t size) {
   return guarded([&] {
     if (client == nullptr) return refuse_no_client();

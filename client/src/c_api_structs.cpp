@@ -15,13 +15,6 @@ liloc_pose to_c(const Pose& T) {
   return pose;
 }
 
-Pose from_c(const liloc_pose& pose) {
-  Pose T;
-  std::copy(std::begin(pose.translation_m), std::end(pose.translation_m), T.translation_m.begin());
-  std::copy(std::begin(pose.rotation_xyzw), std::end(pose.rotation_xyzw), T.rotation_xyzw.begin());
-  return T;
-}
-
 /// The caller's structure as this library knows it.
 Result<liloc_client_options> known_part(const liloc_client_options* options, std::size_t size) {
   if (options == nullptr) return fail("options is NULL; pass what liloc_client_options_init filled");
@@ -45,8 +38,8 @@ Status check(const liloc_client_options& o) {
     return fail("options.network_interface is NULL; a name, an address or \"auto\" (default \"lo\")");
   if (o.domain < 0 || o.domain > kMaxDomain)
     return fail("options.domain is {}; must be 0..{}", o.domain, kMaxDomain);
-  if (o.local < LILOC_LOCAL_CLOUD || o.local > LILOC_LOCAL_DEAD_RECKONING)
-    return fail("options.local is {}; must be a liloc_local, 0..2", o.local);
+  if (o.local < LILOC_LOCAL_CLOUD || o.local > LILOC_LOCAL_EXTERNAL)
+    return fail("options.local is {}; must be a liloc_local, 0..3", o.local);
   if (o.peers == nullptr && o.peer_count > 0)
     return fail("options.peers is NULL, options.peer_count is {}; set both or neither", o.peer_count);
   for (std::size_t i = 0; i < o.peer_count; ++i)
@@ -55,6 +48,13 @@ Status check(const liloc_client_options& o) {
 }
 
 }  // namespace
+
+Pose from_c(const liloc_pose& pose) {
+  Pose T;
+  std::copy(std::begin(pose.translation_m), std::end(pose.translation_m), T.translation_m.begin());
+  std::copy(std::begin(pose.rotation_xyzw), std::end(pose.rotation_xyzw), T.rotation_xyzw.begin());
+  return T;
+}
 
 liloc_client_options default_options() {
   static const Options d;  // its texts outlive every caller
@@ -73,6 +73,8 @@ liloc_client_options default_options() {
   o.cold = d.cold;
   o.seed = d.seed;
   o.queue_frames = d.queue_frames;
+  o.T_base_sensor = to_c(Pose{});
+  o.cpu_share = d.cpu_share;
   return o;
 }
 
@@ -100,6 +102,8 @@ Result<Options> options_from(const liloc_client_options* options, std::size_t si
   out.seed = o.seed;
   out.queue_frames = o.queue_frames;
   if (o.trace_folder != nullptr) out.trace_folder = o.trace_folder;
+  if (o.has_base) out.T_base_sensor = from_c(o.T_base_sensor);
+  out.cpu_share = o.cpu_share;
   return out;
 }
 
@@ -146,9 +150,13 @@ liloc_stats to_c(const Stats& stats) {
   s.replies_refused = stats.replies_refused;
   s.frame_ms_median = stats.frame_ms_median;
   s.frame_ms_p99 = stats.frame_ms_p99;
+  s.frames_skipped = stats.frames_skipped;
+  s.odometry_refused = stats.odometry_refused;
+  s.cpu_s = stats.cpu_s;
   return s;
 }
 
+static_assert(LILOC_LOCAL_EXTERNAL == static_cast<int>(Local::external));
 static_assert(LILOC_LOCAL_DEAD_RECKONING == static_cast<int>(Local::dead_reckoning));
 static_assert(LILOC_LOCAL_INERTIAL == static_cast<int>(Local::inertial));
 static_assert(LILOC_COASTING == static_cast<int>(State::coasting));

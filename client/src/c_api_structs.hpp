@@ -35,6 +35,7 @@ Status copy_out(const T& full, T* out, std::size_t size, const char* name) {
 /// Errors: NULL, size, a field that is set and not known here, id or camera missing, ranges of C's own fields.
 [[nodiscard]] Result<Options> options_from(const liloc_client_options* options, std::size_t size);
 
+[[nodiscard]] Pose from_c(const liloc_pose& pose);
 [[nodiscard]] liloc_pose_update to_c(const PoseUpdate& update);
 /// Its texts point into `reply`.
 [[nodiscard]] liloc_reply to_c(const Reply& reply);

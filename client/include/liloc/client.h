@@ -50,7 +50,8 @@ typedef enum liloc_status {
 typedef enum liloc_local {
   LILOC_LOCAL_CLOUD = 0,    /* clouds, helped by the IMU where there is one */
   LILOC_LOCAL_INERTIAL = 1, /* these two need has_imu */
-  LILOC_LOCAL_DEAD_RECKONING = 2
+  LILOC_LOCAL_DEAD_RECKONING = 2,
+  LILOC_LOCAL_EXTERNAL = 3 /* the odometry is somebody else's: liloc_client_push_odometry */
 } liloc_local;
 
 typedef enum liloc_state {
@@ -97,6 +98,9 @@ typedef struct liloc_client_options {
   uint64_t seed;
   size_t queue_frames;      /* depth frames that may wait; the oldest is dropped for the newest */
   const char* trace_folder; /* online.tum, trajectory.tum, spots.csv, local.csv; NULL: none */
+  bool has_base;            /* T_base_sensor is set */
+  liloc_pose T_base_sensor; /* with external odometry: the sensor on what the odometry moves */
+  double cpu_share;         /* of one core, 0.02..1; frames are left out to keep it */
 } liloc_client_options;
 
 typedef struct liloc_pose_update {
@@ -132,6 +136,9 @@ typedef struct liloc_stats {
   uint64_t requests, requests_unsent, requests_unanswered;
   uint64_t replies, replies_verified, replies_refused;
   double frame_ms_median, frame_ms_p99; /* over the last 512 frames */
+  uint64_t frames_skipped;              /* left out because the computer, or its share, is too small */
+  uint64_t odometry_refused;
+  double cpu_s; /* CPU time of the registration so far */
 } liloc_stats;
 
 typedef struct liloc_client liloc_client;
@@ -172,6 +179,16 @@ liloc_status liloc_client_push_depth(liloc_client* client, const uint16_t* units
 /* IMU axes, three values each, finite; `specific_force_m_s2`: a device at rest reads +g upwards. */
 liloc_status liloc_client_push_imu(liloc_client* client, int64_t stamp_ns, const double* angular_velocity_rad_s,
                                    const double* specific_force_m_s2);
+
+/* `xyz`: `count` points in the sensor's frame, three floats each, copied; in place of a depth image. Of the
+ * points, those within options.camera are used: give it the sensor's field of view and about as many pixels as
+ * it has points there. At most 4 million. */
+liloc_status liloc_client_push_points(liloc_client* client, const float* xyz, size_t count, int64_t stamp_ns);
+/* With LILOC_LOCAL_EXTERNAL: where the odometry has the base, in its own frame; often, and in order. A gap over
+ * a second or a jump starts a new odom_segment. `covariance`: NULL, or 36 values of the pose, row-major, [rad;
+ * m]; its growth bounds the motion's error. */
+liloc_status liloc_client_push_odometry(liloc_client* client, int64_t stamp_ns, const liloc_pose* T_odom_base,
+                                        const double* covariance);
 
 /* Of the newest processed frame; also after stop. Pass sizeof *update. */
 liloc_status liloc_client_newest(const liloc_client* client, liloc_pose_update* update, size_t size);

@@ -87,6 +87,8 @@ TEST(CApi, NullIsRefusedEverywhere) {
       [&] { return liloc_client_push_imu(nullptr, 1, three, three); },
       [&] { return liloc_client_push_imu(client.get(), 1, nullptr, three); },
       [&] { return liloc_client_push_imu(client.get(), 1, three, nullptr); },
+      [&] { return liloc_client_push_points(client.get(), nullptr, 1, 1); },
+      [&] { return liloc_client_push_odometry(client.get(), 1, nullptr, three); },
       [&] { return liloc_client_newest(nullptr, &update, sizeof update); },
       [&] { return liloc_client_stats(nullptr, &stats, sizeof stats); },
       [] { return liloc_client_stop(nullptr); }};
@@ -104,7 +106,7 @@ TEST(CApi, WrongOptionsAreNamedAtCreate) {
       {[](auto& o) { o.network_interface = nullptr; }, "options.network_interface"},
       {[](auto& o) { o.domain = 231; }, "options.domain is 231"},
       {[](auto& o) { o.domain = -1; }, "options.domain is -1"},
-      {[](auto& o) { o.local = 3; }, "options.local is 3"},
+      {[](auto& o) { o.local = 4; }, "options.local is 4"},
       {[](auto& o) { o.peer_count = 2; }, "options.peers is NULL"},
       {[&](auto& o) {
          o.peers = no_host;
@@ -217,6 +219,34 @@ TEST(CApi, WrongSamplesAreRefused) {
   liloc_pose_update update;
   EXPECT_EQ(liloc_client_newest(client.get(), &update, 4), LILOC_INVALID_ARGUMENT);
   EXPECT_EQ(liloc_client_newest(client.get(), nullptr, sizeof update), LILOC_INVALID_ARGUMENT);
+}
+
+TEST(CApi, PointsAndExternalOdometryMoveThePose) {
+  liloc_client_options o = good_options();
+  o.local = LILOC_LOCAL_EXTERNAL;
+  const Handle client = created(o);
+  ASSERT_EQ(liloc_client_start(client.get()), LILOC_OK) << error();
+  std::vector<float> wall;
+  for (int y = -40; y <= 40; ++y)
+    for (int x = -40; x <= 40; ++x)
+      wall.insert(wall.end(), {0.04F * static_cast<float>(x), 0.04F * static_cast<float>(y), 2.5F});
+  liloc_pose_update now{};
+  liloc_pose T = o.T_base_sensor;
+  for (int i = 0; i < 20; ++i) {
+    T.translation_m[0] = 0.01 * i;
+    ASSERT_EQ(liloc_client_push_odometry(client.get(), frame_stamp_ns(i), &T, nullptr), LILOC_OK) << error();
+    ASSERT_EQ(liloc_client_push_points(client.get(), wall.data(), wall.size() / 3, frame_stamp_ns(i)),
+              LILOC_OK);
+    EXPECT_TRUE(within(20s,
+                       [&] {
+                         return liloc_client_newest(client.get(), &now, sizeof now) == LILOC_OK &&
+                                now.stamp_ns == frame_stamp_ns(i);
+                       }))
+        << "frame " << i;
+  }
+  EXPECT_NEAR(now.T_odom_sensor.translation_m[0], 0.19, 1e-6);
+  T.rotation_xyzw[3] = 0;
+  EXPECT_EQ(liloc_client_push_odometry(client.get(), frame_stamp_ns(20), &T, nullptr), LILOC_INVALID_ARGUMENT);
 }
 
 struct Attempts {

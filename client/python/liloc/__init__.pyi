@@ -116,6 +116,14 @@ class Stats:
         """Over the last 512 frames."""
     @property
     def frame_ms_p99(self) -> float: ...
+    @property
+    def frames_skipped(self) -> int:
+        """Left out because the computer, or its share, is too small."""
+    @property
+    def odometry_refused(self) -> int: ...
+    @property
+    def cpu_s(self) -> float:
+        """CPU time of the registration so far."""
 
 class Client:
     """Runs from its making to stop(), the end of its `with` block, or the end of the program."""
@@ -133,13 +141,15 @@ class Client:
         voxel_size_m: float = 0.05,
         interval_ms: int = 800,
         reply_timeout_ms: int = 4000,
-        local: Literal["cloud", "inertial", "dead_reckoning"] = "cloud",
+        local: Literal["cloud", "inertial", "dead_reckoning", "external"] = "cloud",
         T_imu_sensor: Optional[npt.ArrayLike] = None,
         still_seconds: float = 0.0,
         cold: bool = False,
         seed: int = 1,
         queue_frames: int = 4,
         trace_folder: str = "",
+        T_base_sensor: Optional[npt.ArrayLike] = None,
+        cpu_share: float = 1.0,
         on_pose: Optional[Callable[[PoseUpdate], object]] = None,
         on_reply: Optional[Callable[[Reply], object]] = None,
     ) -> None:
@@ -152,6 +162,14 @@ class Client:
     def push_imu(self, stamps_ns: Union[int, npt.NDArray[np.int64]], samples: npt.ArrayLike) -> None:
         """One stamp and six values, or N stamps and N x 6: wx wy wz (rad/s), ax ay az (m/s^2), IMU axes; at rest the
         latter read +g upwards. Raises ValueError for wrong shapes, or without T_imu_sensor."""
+    def push_points(self, points: npt.ArrayLike, stamp_ns: int) -> None:
+        """N x 3 in the sensor's frame, in place of a depth image. Those within the camera are used: give it the
+        sensor's field of view and about as many pixels as it has points there."""
+    def push_odometry(
+        self, stamp_ns: int, T_odom_base: npt.ArrayLike, covariance: Optional[npt.ArrayLike] = None
+    ) -> None:
+        """With local="external": where the odometry has the base, 4x4, in its own frame; often, and in order. A gap
+        over a second or a jump starts a new odom_segment. covariance: 6x6 of the pose, [rad; m]."""
     def newest(self) -> PoseUpdate:
         """Of the newest processed frame."""
     def wait(self, newer_than_ns: int = 0, timeout_s: float = 1.0) -> Optional[PoseUpdate]:

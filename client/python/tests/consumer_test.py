@@ -90,6 +90,29 @@ class Answered(unittest.TestCase):
         self.assertGreaterEqual(robot.stats().replies_verified, 1)
 
 
+class External(unittest.TestCase):
+    def test_odometry_of_others_carries_the_pose(self):
+        lifted = np.eye(4)
+        lifted[2, 3] = 0.4
+        points = np.stack(np.meshgrid(np.arange(-1.6, 1.6, 0.04), np.arange(-1.6, 1.6, 0.04), [2.5]), -1).reshape(-1, 3)
+        with client(local="external", T_base_sensor=lifted) as robot:
+            for frame in range(20):
+                T = np.eye(4)
+                T[0, 3] = 0.01 * frame
+                robot.push_odometry(box.stamp_ns(frame), T, covariance=1e-6 * (frame + 1) * np.eye(6))
+                robot.push_points(points if frame % 2 else points.astype(np.float32), box.stamp_ns(frame))
+                pose = robot.wait(newer_than_ns=box.stamp_ns(frame) - 1, timeout_s=20)
+                self.assertIsNotNone(pose, f"frame {frame}")
+            np.testing.assert_allclose(pose.T_odom_sensor[:3, 3], [0.19, 0, 0.4], atol=1e-6)
+            for wrong in (2 * np.eye(4), np.eye(3)):
+                with self.assertRaisesRegex(ValueError, "T_odom_base"):
+                    robot.push_odometry(box.stamp_ns(20), wrong)
+            with self.assertRaisesRegex(ValueError, "6x6"):
+                robot.push_odometry(box.stamp_ns(20), np.eye(4), np.eye(5))
+            with self.assertRaisesRegex(ValueError, "N x 3"):
+                robot.push_points(np.zeros((3, 4)), box.stamp_ns(20))
+
+
 class Imu(unittest.TestCase):
     MOUNTING = np.array([[0, 0, 1, 0.01], [-1, 0, 0, 0], [0, -1, 0, 0.005], [0, 0, 0, 1.0]])
 

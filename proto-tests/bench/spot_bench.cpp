@@ -1,4 +1,5 @@
-// How well and how fast single spots are found: cold and with history, on simulated sites whose seeds are named.
+// How well and how fast single spots are found: cold and with history, on simulated sites whose seeds are
+// named.
 //
 //   liloc_spot_bench --sites 100 [--first-seed 1] [--threads 1] [--csv rows.csv] [--no-gravity]
 //
@@ -26,6 +27,8 @@ struct Row {
   std::uint64_t seed = 0;
   bool cold = false;
   double overlap = 0, error_deg = 999, error_m = 999, latency_ms = 0;
+  double nees =
+      -1;  ///< squared error over the reported covariance: 6 on average if that is honest; -1: no pose
   SpotReply reply;
   [[nodiscard]] bool within(double deg, double m) const { return error_deg <= deg && error_m <= m; }
 };
@@ -42,8 +45,8 @@ struct Options {
 sim::SimOptions site_options(std::uint64_t seed, double seconds) {
   sim::SimOptions o;
   o.seed = 1000 + seed;
-  constexpr std::array kinds{sim::SiteKind::office,   sim::SiteKind::office,   sim::SiteKind::office,
-                             sim::SiteKind::corridor, sim::SiteKind::office,   sim::SiteKind::area,
+  constexpr std::array kinds{sim::SiteKind::office,   sim::SiteKind::office,    sim::SiteKind::office,
+                             sim::SiteKind::corridor, sim::SiteKind::office,    sim::SiteKind::area,
                              sim::SiteKind::office,   sim::SiteKind::symmetric, sim::SiteKind::office,
                              sim::SiteKind::office};
   o.kind = kinds[seed % kinds.size()];
@@ -96,7 +99,16 @@ class DriftingOdometry {
   Pose T_odom_sensor_ = Pose::Identity();
 };
 
-double overlap_at(GlobalCloud& room, const DepthImage& image, const DeviceInfo& device, const Pose& T_map_sensor) {
+/// Error of the pose in the sensor's axes against its reported covariance.
+double nees_of(const SpotReply& reply, const Pose& truth) {
+  Vector6d error;
+  error << so3_log(truth.linear().transpose() * reply.T_map_sensor->linear()),
+      truth.linear().transpose() * (reply.T_map_sensor->translation() - truth.translation());
+  return error.dot(reply.covariance.ldlt().solve(error));
+}
+
+double overlap_at(GlobalCloud& room, const DepthImage& image, const DeviceInfo& device,
+                  const Pose& T_map_sensor) {
   const auto snapshot = room.nearest(image.stamp_ns);
   const auto cloud = depth_to_cloud(image, device.camera, {0.25, 6.0, 0.0});
   if (!snapshot || !cloud || cloud->empty()) return 0;
@@ -131,12 +143,13 @@ Result<std::vector<Row>> run_site(std::uint64_t seed, const Options& options) {
       for (const bool cold : {true, false}) {
         request.cold = cold;
         request.seq = ++seq;
-        Row row{seed, cold, overlap, 999, 999, 0, localizer.locate(request)};
+        Row row{seed, cold, overlap, 999, 999, 0, -1, localizer.locate(request)};
         row.latency_ms = row.reply.latency_ms;
         if (row.reply.reason == Reason::no_gpc || row.reply.reason == Reason::bad_cloud) continue;
         if (row.reply.T_map_sensor) {
           row.error_deg = degrees(angle_between_rad(*row.reply.T_map_sensor, frame.T_map_sensor));
           row.error_m = distance_m(*row.reply.T_map_sensor, frame.T_map_sensor);
+          row.nees = nees_of(row.reply, frame.T_map_sensor);
         }
         rows.push_back(row);
       }
@@ -149,7 +162,8 @@ Result<std::vector<Row>> run_site(std::uint64_t seed, const Options& options) {
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
 void print_mode(const std::vector<Row>& all, bool cold) {
@@ -165,10 +179,14 @@ void print_mode(const std::vector<Row>& all, bool cold) {
       verified += r.reply.verified();
       wrong += r.reply.verified() && !r.within(10, 0.3);
     }
-    const auto share = [&](std::size_t k) { return n == 0 ? 0.0 : 100.0 * static_cast<double>(k) / static_cast<double>(n); };
-    fmt::print("{:>10} {:>6} {:>8.1f}% {:>8.1f}% {:>8.1f}% {:>9}\n", name, n, share(loose), share(strict), share(verified), wrong);
+    const auto share = [&](std::size_t k) {
+      return n == 0 ? 0.0 : 100.0 * static_cast<double>(k) / static_cast<double>(n);
+    };
+    fmt::print("{:>10} {:>6} {:>8.1f}% {:>8.1f}% {:>8.1f}% {:>9}\n", name, n, share(loose), share(strict),
+               share(verified), wrong);
   };
-  for (int d = 0; d < 10; ++d) line(fmt::format("{:.1f}-{:.1f}", d / 10.0, (d + 1) / 10.0), d / 10.0, (d + 1) / 10.0 + (d == 9));
+  for (int d = 0; d < 10; ++d)
+    line(fmt::format("{:.1f}-{:.1f}", d / 10.0, (d + 1) / 10.0), d / 10.0, (d + 1) / 10.0 + (d == 9));
   line("over 0.3", 0.3, 2);
   line("all", -1, 2);
   std::vector<double> latency;
@@ -177,13 +195,32 @@ void print_mode(const std::vector<Row>& all, bool cold) {
   fmt::print("latency: median {:.1f} ms, p90 {:.1f} ms\n", percentile(latency, 0.5), percentile(latency, 0.9));
 }
 
+/// Verified answers only: a wrong one has no covariance to speak of.
+void print_consistency(const std::vector<Row>& all) {
+  constexpr double kLow = 1.237, kHigh = 14.449;  // 95 % of chi-squared with six degrees of freedom
+  std::vector<double> nees;
+  for (const Row& r : all)
+    if (r.reply.verified() && r.within(10, 0.3)) nees.push_back(r.nees);
+  if (nees.empty()) return;
+  const auto inside = std::count_if(nees.begin(), nees.end(), [](double v) { return v >= kLow && v <= kHigh; });
+  double sum = 0;
+  for (const double v : nees) sum += std::min(v, 100.0);
+  fmt::print(
+      "\ncovariance of verified answers: NEES median {:.1f} (5.3 expected), mean {:.1f} (6), {:.0f} % within "
+      "95 % bounds\n",
+      percentile(nees, 0.5), sum / static_cast<double>(nees.size()),
+      100.0 * static_cast<double>(inside) / static_cast<double>(nees.size()));
+}
+
 Status write_csv(const std::string& path, const std::vector<Row>& rows) {
   std::ofstream out(path);
-  out << "seed,cold,overlap_truth,error_deg,error_m,status,reason,fitness,overlap,margin,latency_ms,text\n";
+  out << "seed,cold,overlap_truth,error_deg,error_m,status,reason,fitness,overlap,margin,latency_ms,nees,"
+         "text\n";
   for (const Row& r : rows)
-    out << fmt::format("{},{},{:.3f},{:.2f},{:.3f},{},{},{:.3f},{:.3f},{:.3f},{:.1f},{}\n", r.seed, r.cold ? 1 : 0, r.overlap,
-                       r.error_deg, r.error_m, name_of(r.reply.status), name_of(r.reply.reason), r.reply.fitness,
-                       r.reply.overlap, r.reply.margin, r.latency_ms, r.reply.text);
+    out << fmt::format("{},{},{:.3f},{:.2f},{:.3f},{},{},{:.3f},{:.3f},{:.3f},{:.1f},{:.2f},{}\n", r.seed,
+                       r.cold ? 1 : 0, r.overlap, r.error_deg, r.error_m, name_of(r.reply.status),
+                       name_of(r.reply.reason), r.reply.fitness, r.reply.overlap, r.reply.margin, r.latency_ms,
+                       r.nees, r.reply.text);
   if (!out.flush()) return fail("{}: cannot be written; name a file in a folder that exists", path);
   return {};
 }
@@ -200,13 +237,15 @@ int run(const Options& options) {
     rows.insert(rows.end(), site->begin(), site->end());
     if (options.verbose)
       for (const Row& r : *site)
-        fmt::print("site {} {} overlap {:.2f} error {:6.2f} deg {:6.3f} m {} {} margin {:.2f} {}\n", seed, r.cold ? "cold" : "hist",
-                   r.overlap, r.error_deg, r.error_m, name_of(r.reply.status), name_of(r.reply.reason), r.reply.margin, r.reply.text);
+        fmt::print("site {} {} overlap {:.2f} error {:6.2f} deg {:6.3f} m {} {} margin {:.2f} {}\n", seed,
+                   r.cold ? "cold" : "hist", r.overlap, r.error_deg, r.error_m, name_of(r.reply.status),
+                   name_of(r.reply.reason), r.reply.margin, r.reply.text);
   }
-  fmt::print("{} sites from seed {}, {} thread(s), gravity {}\n", options.sites, options.first_seed, options.threads,
-             options.gravity ? "known" : "unknown");
+  fmt::print("{} sites from seed {}, {} thread(s), gravity {}\n", options.sites, options.first_seed,
+             options.threads, options.gravity ? "known" : "unknown");
   print_mode(rows, true);
   print_mode(rows, false);
+  print_consistency(rows);
   if (options.csv.empty()) return 0;
   if (const Status written = write_csv(options.csv, rows); !written) {
     fmt::print(stderr, "{}\n", written.error().message);
@@ -221,10 +260,14 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   liloc::Options options;
   CLI::App app{"Spots on simulated sites: success by overlap, wrong verified answers, latency"};
-  app.add_option("--sites", options.sites, "Number of sites")->check(CLI::Range(1, 10000))->capture_default_str();
+  app.add_option("--sites", options.sites, "Number of sites")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
   app.add_option("--first-seed", options.first_seed, "Seed of the first site")->capture_default_str();
   app.add_option("--threads", options.threads, "Per request")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--seconds", options.seconds, "Simulated per site")->check(CLI::Range(2, 600))->capture_default_str();
+  app.add_option("--seconds", options.seconds, "Simulated per site")
+      ->check(CLI::Range(2, 600))
+      ->capture_default_str();
   app.add_option("--csv", options.csv, "Write a row per spot");
   app.add_flag("!--no-gravity", options.gravity, "Devices do not know gravity");
   app.add_flag("--verbose", options.verbose, "Print every spot");

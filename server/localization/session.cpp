@@ -103,7 +103,8 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
   std::vector<Hypothesis> found;
   const auto decision = search_room(spot, &found);
   if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
-  report(decision ? decision->here : tracks_.best_first().front().latest, last_margin_, reply);
+  const Track& best = tracks_.best_first().front();
+  report(decision ? decision->here : best.fits.back() ? best.latest : found.front(), last_margin_, reply);
   if (decision) {
     reply->T_map_odom = T_map_odom_;
     return conclude(SpotStatus::verified, decision->reason, reply);
@@ -116,8 +117,8 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
 /// Refines the predicted pose, held by odometry as far as the track is sure of itself. True when free space bears
 /// the answer out; otherwise the prediction is the better answer.
 bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* reply) {
-  sd_rad_ = std::hypot(sd_rad_, request.odom_sd_rad);
-  sd_m_ = std::hypot(sd_m_, request.odom_sd_m);
+  sd_rad_ = std::hypot(sd_rad_, std::max(request.odom_sd_rad, verify_.step_sd_rad));
+  sd_m_ = std::hypot(sd_m_, std::max(request.odom_sd_m, verify_.step_sd_m));
   const Pose predicted = *T_map_odom_ * request.T_odom_sensor;
   const PosePrior prior{predicted, sd_rad_, sd_m_, verify_.spot_sd_m * std::sqrt(kPairsOfASpot)};
   Hypothesis here = refine_and_judge(spot.problem(), predicted, {}, &prior);

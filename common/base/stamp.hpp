@@ -8,10 +8,18 @@ namespace liloc {
 using StampNs = std::int64_t;
 
 constexpr double kNsPerSecond = 1e9;
-constexpr StampNs from_ms(double ms) { return static_cast<StampNs>(ms * 1e6); }
-constexpr double to_ms(StampNs duration_ns) { return static_cast<double>(duration_ns) * 1e-6; }
-constexpr double to_seconds(StampNs duration_ns) { return static_cast<double>(duration_ns) / kNsPerSecond; }
-constexpr StampNs from_seconds(double seconds) { return static_cast<StampNs>(seconds * kNsPerSecond); }
+constexpr StampNs from_ms(double ms) {
+  return static_cast<StampNs>(ms * 1e6);
+}
+constexpr double to_ms(StampNs duration_ns) {
+  return static_cast<double>(duration_ns) * 1e-6;
+}
+constexpr double to_seconds(StampNs duration_ns) {
+  return static_cast<double>(duration_ns) / kNsPerSecond;
+}
+constexpr StampNs from_seconds(double seconds) {
+  return static_cast<StampNs>(seconds * kNsPerSecond);
+}
 
 /// Measures elapsed time on the steady clock; never compared with a stamp.
 class Stopwatch {

@@ -7,13 +7,17 @@ namespace {
 
 constexpr int kLargestSide = 8192;
 
-bool positive(double value) { return std::isfinite(value) && value > 0; }
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
 
 }  // namespace
 
 Result<Camera> Camera::validated(std::string_view what) const {
-  if (width < 1 || width > kLargestSide) return fail("{}.width is {}; must be 1..{}", what, width, kLargestSide);
-  if (height < 1 || height > kLargestSide) return fail("{}.height is {}; must be 1..{}", what, height, kLargestSide);
+  if (width < 1 || width > kLargestSide)
+    return fail("{}.width is {}; must be 1..{}", what, width, kLargestSide);
+  if (height < 1 || height > kLargestSide)
+    return fail("{}.height is {}; must be 1..{}", what, height, kLargestSide);
   if (!positive(fx)) return fail("{}.fx is {}; a focal length is positive (pixels)", what, fx);
   if (!positive(fy)) return fail("{}.fy is {}; a focal length is positive (pixels)", what, fy);
   if (!std::isfinite(cx) || cx < -width || cx > 2.0 * width)

@@ -15,7 +15,8 @@ struct Camera {
   double fx = 0, fy = 0, cx = 0, cy = 0;
   double depth_scale_m = 0.001;  ///< metres per unit of a depth image
 
-  /// Checks sizes 1..8192, focal lengths and scale positive and finite, centre within one image size of the image.
+  /// Checks sizes 1..8192, focal lengths and scale positive and finite, centre within one image size of the
+  /// image.
   [[nodiscard]] Result<Camera> validated(std::string_view what) const;
 };
 

@@ -9,8 +9,9 @@ namespace liloc {
 /// Points in one frame, named by the variable (`cloud_sensor`, `gpc_map`). Single precision: a room of 100 m is
 /// resolved to 8 micrometres, and twice as many points fit a cache line.
 struct Cloud {
-  std::vector<Eigen::Vector3f> points;   ///< metres
-  std::vector<Eigen::Vector3f> normals;  ///< unit, towards the sensor that saw the point; empty or one per point
+  std::vector<Eigen::Vector3f> points;  ///< metres
+  std::vector<Eigen::Vector3f>
+      normals;  ///< unit, towards the sensor that saw the point; empty or one per point
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
   [[nodiscard]] bool empty() const { return points.empty(); }

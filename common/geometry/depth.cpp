@@ -31,7 +31,8 @@ Result<Cloud> depth_to_cloud(const DepthImage& image, const Camera& camera, cons
   for (std::size_t u = 0; u < width; ++u)
     ray_x[u] = static_cast<float>((static_cast<double>(u) - camera.cx) / camera.fx);
   const auto scale = static_cast<float>(camera.depth_scale_m);
-  const auto nearest = static_cast<float>(options.min_range_m), farthest = static_cast<float>(options.max_range_m);
+  const auto nearest = static_cast<float>(options.min_range_m),
+             farthest = static_cast<float>(options.max_range_m);
   for (std::size_t v = 0; v < height; ++v) {
     const auto ray_y = static_cast<float>((static_cast<double>(v) - camera.cy) / camera.fy);
     const std::uint16_t* row = image.units.data() + v * width;

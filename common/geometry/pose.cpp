@@ -40,13 +40,17 @@ Pose interpolate(const Pose& a, const Pose& b, double share) {
   return T;
 }
 
-double rotation_angle_rad(const Pose& T) { return so3_log(T.linear()).norm(); }
+double rotation_angle_rad(const Pose& T) {
+  return so3_log(T.linear()).norm();
+}
 
 double angle_between_rad(const Pose& a, const Pose& b) {
   return so3_log(a.linear().transpose() * b.linear()).norm();
 }
 
-double distance_m(const Pose& a, const Pose& b) { return (a.translation() - b.translation()).norm(); }
+double distance_m(const Pose& a, const Pose& b) {
+  return (a.translation() - b.translation()).norm();
+}
 
 Pose normalized(const Pose& T) {
   Pose result = T;

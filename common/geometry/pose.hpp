@@ -33,10 +33,14 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;  ///< same order
 
 /// A pose from numbers of a file or a wire. `what` names the field in the error: non-finite values, a
 /// quaternion off unit length by more than 1e-2 or a translation beyond 1e5 m are refused.
-[[nodiscard]] Result<Pose> valid_pose(const Eigen::Vector3d& translation_m, const Eigen::Vector4d& rotation_xyzw,
-                                      std::string_view what);
+[[nodiscard]] Result<Pose> valid_pose(const Eigen::Vector3d& translation_m,
+                                      const Eigen::Vector4d& rotation_xyzw, std::string_view what);
 
-constexpr double degrees(double rad) { return rad * 57.29577951308232; }
-constexpr double radians(double deg) { return deg / 57.29577951308232; }
+constexpr double degrees(double rad) {
+  return rad * 57.29577951308232;
+}
+constexpr double radians(double deg) {
+  return deg / 57.29577951308232;
+}
 
 }  // namespace liloc

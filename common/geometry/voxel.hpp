@@ -17,8 +17,9 @@ namespace liloc {
   return part(cell.x()) | part(cell.y()) << 21 | part(cell.z()) << 42;
 }
 
-/// One point per occupied voxel: the mean of the points in it, and the mean normal, made unit again, where there
-/// are normals. Voxels come in the order in which the input first enters them. Non-finite points are dropped.
+/// One point per occupied voxel: the mean of the points in it, and the mean normal, made unit again, where
+/// there are normals. Voxels come in the order in which the input first enters them. Non-finite points are
+/// dropped.
 [[nodiscard]] Cloud voxel_downsample(const Cloud& cloud, double voxel_size_m);
 
 }  // namespace liloc

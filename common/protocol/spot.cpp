@@ -6,35 +6,58 @@ namespace liloc {
 
 std::string_view name_of(SpotStatus status) {
   switch (status) {
-    case SpotStatus::verified: return "verified";
-    case SpotStatus::provisional: return "provisional";
-    case SpotStatus::refused: return "refused";
+    case SpotStatus::verified:
+      return "verified";
+    case SpotStatus::provisional:
+      return "provisional";
+    case SpotStatus::refused:
+      return "refused";
   }
   return "unknown";
 }
 
 std::string_view name_of(Reason reason) {
   switch (reason) {
-    case Reason::none: return "none";
-    case Reason::confirmed: return "confirmed";
-    case Reason::conclusive: return "conclusive";
-    case Reason::corrected: return "corrected";
-    case Reason::awaiting_spots: return "awaiting_spots";
-    case Reason::ambiguous: return "ambiguous";
-    case Reason::inconsistent: return "inconsistent";
-    case Reason::weak: return "weak";
-    case Reason::no_gpc: return "no_gpc";
-    case Reason::not_found: return "not_found";
-    case Reason::superseded: return "superseded";
-    case Reason::overloaded: return "overloaded";
-    case Reason::late: return "late";
-    case Reason::bad_request: return "bad_request";
-    case Reason::bad_cloud: return "bad_cloud";
-    case Reason::protocol_version: return "protocol_version";
-    case Reason::identity: return "identity";
-    case Reason::rate_limit: return "rate_limit";
-    case Reason::shutting_down: return "shutting_down";
-    case Reason::no_answer: return "no_answer";
+    case Reason::none:
+      return "none";
+    case Reason::confirmed:
+      return "confirmed";
+    case Reason::conclusive:
+      return "conclusive";
+    case Reason::corrected:
+      return "corrected";
+    case Reason::awaiting_spots:
+      return "awaiting_spots";
+    case Reason::ambiguous:
+      return "ambiguous";
+    case Reason::inconsistent:
+      return "inconsistent";
+    case Reason::weak:
+      return "weak";
+    case Reason::no_gpc:
+      return "no_gpc";
+    case Reason::not_found:
+      return "not_found";
+    case Reason::superseded:
+      return "superseded";
+    case Reason::overloaded:
+      return "overloaded";
+    case Reason::late:
+      return "late";
+    case Reason::bad_request:
+      return "bad_request";
+    case Reason::bad_cloud:
+      return "bad_cloud";
+    case Reason::protocol_version:
+      return "protocol_version";
+    case Reason::identity:
+      return "identity";
+    case Reason::rate_limit:
+      return "rate_limit";
+    case Reason::shutting_down:
+      return "shutting_down";
+    case Reason::no_answer:
+      return "no_answer";
   }
   return "unknown";
 }

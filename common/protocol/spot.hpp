@@ -39,8 +39,8 @@ struct LocalPose {
 /// "Where am I?", asked every 800 ms: the LPC of one frame and how the device moved since the last request.
 struct SpotRequest {
   std::string client_id;
-  std::uint64_t seq = 0;    ///< rises by one per request of a client session
-  StampNs stamp_ns = 0;     ///< of the frame, device clock
+  std::uint64_t seq = 0;           ///< rises by one per request of a client session
+  StampNs stamp_ns = 0;            ///< of the frame, device clock
   std::uint32_t odom_segment = 0;  ///< poses of other segments say nothing about this one
   Pose T_odom_sensor = Pose::Identity();
   /// Uncertainty of the motion since the previous request (one standard deviation).
@@ -60,25 +60,25 @@ enum class SpotStatus : std::uint8_t { verified = 1, provisional = 2, refused = 
 /// Why a reply is what it is. Ids are added, never reused.
 enum class Reason : std::uint8_t {
   none = 0,
-  confirmed = 1,           ///< verified: the equality checks hold over several spots
-  conclusive = 2,          ///< verified: free space and margin alone decide
-  corrected = 3,           ///< verified: this spot was contradicted by the others and corrected
-  awaiting_spots = 10,     ///< provisional: too few spots to verify
-  ambiguous = 11,          ///< provisional: a distinct second pose scores nearly as well
-  inconsistent = 12,       ///< provisional: the spots contradict each other
-  weak = 13,               ///< provisional: too little overlap or too many violations to say
-  no_gpc = 20,             ///< refused: no global cloud within 100 ms of the request's stamp
-  not_found = 21,          ///< refused: no candidate pose was acceptable
-  superseded = 22,         ///< refused: a newer request of the same client took its place
-  overloaded = 23,         ///< refused: the queue was full
-  late = 24,               ///< refused: older than the client's last answered request
-  bad_request = 25,        ///< refused: a value out of range; `text` names it
-  bad_cloud = 26,          ///< refused: the LPC could not be decoded, or has too few points
-  protocol_version = 27,   ///< refused: client and server speak different versions
-  identity = 28,           ///< refused: client_id is not the one bound to the sender's partition
-  rate_limit = 29,         ///< refused: the client asks too often
-  shutting_down = 30,      ///< refused: the server stops
-  no_answer = 31,          ///< set by a client whose request timed out
+  confirmed = 1,          ///< verified: the equality checks hold over several spots
+  conclusive = 2,         ///< verified: free space and margin alone decide
+  corrected = 3,          ///< verified: this spot was contradicted by the others and corrected
+  awaiting_spots = 10,    ///< provisional: too few spots to verify
+  ambiguous = 11,         ///< provisional: a distinct second pose scores nearly as well
+  inconsistent = 12,      ///< provisional: the spots contradict each other
+  weak = 13,              ///< provisional: too little overlap or too many violations to say
+  no_gpc = 20,            ///< refused: no global cloud within 100 ms of the request's stamp
+  not_found = 21,         ///< refused: no candidate pose was acceptable
+  superseded = 22,        ///< refused: a newer request of the same client took its place
+  overloaded = 23,        ///< refused: the queue was full
+  late = 24,              ///< refused: older than the client's last answered request
+  bad_request = 25,       ///< refused: a value out of range; `text` names it
+  bad_cloud = 26,         ///< refused: the LPC could not be decoded, or has too few points
+  protocol_version = 27,  ///< refused: client and server speak different versions
+  identity = 28,          ///< refused: client_id is not the one bound to the sender's partition
+  rate_limit = 29,        ///< refused: the client asks too often
+  shutting_down = 30,     ///< refused: the server stops
+  no_answer = 31,         ///< set by a client whose request timed out
 };
 
 [[nodiscard]] std::string_view name_of(SpotStatus status);
@@ -91,17 +91,17 @@ struct SpotReply {
   StampNs gpc_stamp_ns = 0;  ///< of the snapshot used, server clock; 0 when there is none
   SpotStatus status = SpotStatus::refused;
   Reason reason = Reason::none;
-  std::string text;                   ///< for people; at most 200 characters
-  std::optional<Pose> T_map_sensor;   ///< the spot's own best answer; empty when there is none
+  std::string text;                        ///< for people; at most 200 characters
+  std::optional<Pose> T_map_sensor;        ///< the spot's own best answer; empty when there is none
   Matrix6d covariance = Matrix6d::Zero();  ///< of T_map_sensor, sensor frame, [rad; m]
-  double fitness = 0;        ///< share of LPC points with a GPC point within one voxel
-  double inlier_rmse_m = 0;  ///< over those
-  double overlap = 0;        ///< share of LPC points in space that the ceiling sees and that agree, of those seen
-  double margin = 0;         ///< score over the best distinct runner-up's, 0..1
+  double fitness = 0;                      ///< share of LPC points with a GPC point within one voxel
+  double inlier_rmse_m = 0;                ///< over those
+  double overlap = 0;  ///< share of LPC points in space that the ceiling sees and that agree, of those seen
+  double margin = 0;   ///< score over the best distinct runner-up's, 0..1
   /// Where odometry lies in the map, as far as all spots of the segment tell; set when verified.
   std::optional<Pose> T_map_odom;
   std::uint32_t odom_segment = 0;
-  double latency_ms = 0;     ///< from the request's arrival to this answer, server side
+  double latency_ms = 0;  ///< from the request's arrival to this answer, server side
   std::string server_id;
 
   [[nodiscard]] bool verified() const { return status == SpotStatus::verified; }

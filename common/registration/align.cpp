@@ -25,14 +25,16 @@ struct Ranked {
 };
 
 /// Bare clouds have no free space to contradict: the number of points that fit, normals too, decides.
-std::vector<Ranked> rank(const SpotProblem& problem, const std::vector<Candidate>& candidates, double distance_m) {
+std::vector<Ranked> rank(const SpotProblem& problem, const std::vector<Candidate>& candidates,
+                         double distance_m) {
   JudgeOptions options;
   options.refine_most = options.keep = 20;
   std::vector<Ranked> ranked;
   for (const Hypothesis& h : judge_candidates(problem, candidates, options))
     ranked.push_back({h, fit_of(problem.target, problem.query.cloud, h.T_map_sensor(), distance_m)});
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.hypothesis.alignment.pairs > b.hypothesis.alignment.pairs; });
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    return a.hypothesis.alignment.pairs > b.hypothesis.alignment.pairs;
+  });
   return ranked;
 }
 
@@ -43,8 +45,8 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   const double voxel = options.voxel_size_m;
   const Query query = make_query(source, nullptr, {voxel, 400, options.seed});
   if (query.cloud.size() < kFewestPoints)
-    return fail("source has {} usable points at a voxel of {} m; at least {} are needed", query.cloud.size(), voxel,
-                kFewestPoints);
+    return fail("source has {} usable points at a voxel of {} m; at least {} are needed", query.cloud.size(),
+                voxel, kFewestPoints);
   Cloud thin = with_normals(voxel_downsample(target, voxel), Eigen::Vector3f::Zero(), {2.5 * voxel, 5});
   if (thin.size() < kFewestPoints)
     return fail("target has {} usable points at a voxel of {} m; at least {} are needed", thin.size(), voxel,
@@ -52,8 +54,14 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   const Target room = make_target(std::move(thin), {}, voxel);
   const Described room_described = describe(room->coarse, {10 * voxel, 1.0, options.seed});
   const Described query_described = describe(query.medium, {10 * voxel, 1.0, options.seed});
-  SpotProblem problem{room, query, std::nullopt, std::nullopt, [&]() -> const Described& { return room_described; },
-                      [&]() -> const Described& { return query_described; }, options.seed, options.threads};
+  SpotProblem problem{room,
+                      query,
+                      std::nullopt,
+                      std::nullopt,
+                      [&]() -> const Described& { return room_described; },
+                      [&]() -> const Described& { return query_described; },
+                      options.seed,
+                      options.threads};
   if (options.gravity) problem.up_sensor = Eigen::Vector3d::UnitZ();
   FeatureSearchOptions features;
   features.grid = false;

@@ -36,8 +36,8 @@ std::vector<Match> match_features(const Described& query, const Described& targe
       similarity.col(i).maxCoeff(&best);
       const std::uint32_t s = query.features.index[static_cast<std::size_t>(begin + i)];
       const std::uint32_t t = target.features.index[cell[static_cast<std::size_t>(best)]];
-      matches.push_back({query.cloud.points[s], target.cloud.points[t], query.cloud.normals[s],
-                         target.cloud.normals[t]});
+      matches.push_back(
+          {query.cloud.points[s], target.cloud.points[t], query.cloud.normals[s], target.cloud.normals[t]});
     }
   }
   return matches;
@@ -50,7 +50,8 @@ bool sides_agree(const Match& a, const Match& b, float ratio) {
 
 /// Least-squares rigid transform of three pairs (Umeyama 1991, without scale).
 Eigen::Isometry3f from_three(const Match& a, const Match& b, const Match& c) {
-  const Eigen::Vector3f source = (a.source + b.source + c.source) / 3, target = (a.target + b.target + c.target) / 3;
+  const Eigen::Vector3f source = (a.source + b.source + c.source) / 3,
+                        target = (a.target + b.target + c.target) / 3;
   const Eigen::Matrix3f covariance = (a.target - target) * (a.source - source).transpose() +
                                      (b.target - target) * (b.source - source).transpose() +
                                      (c.target - target) * (c.source - source).transpose();
@@ -67,8 +68,8 @@ bool normals_agree(const Eigen::Isometry3f& T, const Match& m) {
 }
 
 /// Mean worth of the points on the field, or a low value as soon as the first points promise less than `floor`.
-float field_score(const ScoreField& field, const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3f& T,
-                  float floor) {
+float field_score(const ScoreField& field, const std::vector<Eigen::Vector3f>& points,
+                  const Eigen::Isometry3f& T, float floor) {
   int sum = 0, seen = 0;
   for (const auto& p : points) {
     sum += field.at(T * p);
@@ -111,12 +112,13 @@ std::vector<Candidate> ransac(const ScoreField& field, const std::vector<Eigen::
 
 Described describe(const Cloud& thinned, const DescribeOptions& options) {
   Described result{thinned, {}};
-  result.features = fpfh(thinned, sample_indices(thinned.size(), options.sampling, options.seed),
-                         options.feature_radius_m);
+  result.features =
+      fpfh(thinned, sample_indices(thinned.size(), options.sampling, options.seed), options.feature_radius_m);
   return result;
 }
 
-std::vector<std::vector<std::uint32_t>> partition(const Described& described, double cell_m, std::size_t min_points) {
+std::vector<std::vector<std::uint32_t>> partition(const Described& described, double cell_m,
+                                                  std::size_t min_points) {
   std::vector<std::vector<std::uint32_t>> cells;
   const auto& index = described.features.index;
   std::vector<std::uint32_t> all(index.size());
@@ -125,7 +127,8 @@ std::vector<std::vector<std::uint32_t>> partition(const Described& described, do
   for (const std::uint32_t i : index) box.extend(described.cloud.points[i]);
   if (index.empty()) return {all};
   const auto half = static_cast<float>(cell_m);
-  const int nx = std::max(1, static_cast<int>(box.sizes().x() / half)), ny = std::max(1, static_cast<int>(box.sizes().y() / half));
+  const int nx = std::max(1, static_cast<int>(box.sizes().x() / half)),
+            ny = std::max(1, static_cast<int>(box.sizes().y() / half));
   std::vector<int> held(index.size(), 0);  // by how many kept cells
   for (int x = 1; x <= nx; ++x)
     for (int y = 1; y <= ny; ++y) {
@@ -145,8 +148,9 @@ std::vector<std::vector<std::uint32_t>> partition(const Described& described, do
   return cells;
 }
 
-std::vector<Candidate> feature_search(const Target& target, const Described& target_described, const Query& query,
-                                      const Described& query_described, const FeatureSearchOptions& options) {
+std::vector<Candidate> feature_search(const Target& target, const Described& target_described,
+                                      const Query& query, const Described& query_described,
+                                      const FeatureSearchOptions& options) {
   if (query_described.features.size() < 3 || target_described.features.size() < 3) return {};
   const double cell_m = options.grid ? options.cell_m : 1e6;
   const auto cells = partition(target_described, cell_m, query_described.features.size() / 8);

@@ -21,10 +21,10 @@ struct DescribeOptions {
 [[nodiscard]] Described describe(const Cloud& thinned, const DescribeOptions& options);
 
 struct FeatureSearchOptions {
-  bool grid = true;               ///< Algorithm 2; false: one cell over everything
-  double cell_m = 2.5;            ///< half the width of a cell
-  int iterations = 60000;         ///< three-point samples, over all cells
-  double edge_ratio = 0.85;       ///< the sides of both triangles agree to this share
+  bool grid = true;          ///< Algorithm 2; false: one cell over everything
+  double cell_m = 2.5;       ///< half the width of a cell
+  int iterations = 60000;    ///< three-point samples, over all cells
+  double edge_ratio = 0.85;  ///< the sides of both triangles agree to this share
   std::size_t propose = 40;
   std::uint64_t seed = 1;
   int threads = 1;
@@ -32,8 +32,8 @@ struct FeatureSearchOptions {
 
 /// The paper's grid-RANSAC (section 5.2, Algorithm 2): the target is cut into overlapping cells, RANSAC over
 /// feature matches runs in each, in parallel; cells with too few points or covered by their neighbours are left
-/// out. Samples are scored on the target's fine field with an early stop. Each cell has its own seed, so the answer
-/// does not depend on the number of threads. Needs no gravity.
+/// out. Samples are scored on the target's fine field with an early stop. Each cell has its own seed, so the
+/// answer does not depend on the number of threads. Needs no gravity.
 [[nodiscard]] std::vector<Candidate> feature_search(const Target& target, const Described& target_described,
                                                     const Query& query, const Described& query_described,
                                                     const FeatureSearchOptions& options = {});

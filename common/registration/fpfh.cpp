@@ -18,7 +18,8 @@ int bin(float value, float low, float span) {
   return std::clamp(static_cast<int>(std::floor(kBins * (value - low) / span)), 0, kBins - 1);
 }
 
-/// Adds the three angles of a pair in its Darboux frame; the point whose normal is nearer to the line is the source.
+/// Adds the three angles of a pair in its Darboux frame; the point whose normal is nearer to the line is the
+/// source.
 void add_pair(const Eigen::Vector3f& p1, const Eigen::Vector3f& n1, const Eigen::Vector3f& p2,
               const Eigen::Vector3f& n2, Histogram* histogram) {
   Eigen::Vector3f line = p2 - p1;

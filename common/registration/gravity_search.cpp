@@ -11,7 +11,8 @@ namespace liloc {
 namespace {
 
 /// sums[r][i] += rows[r][i]: one device point over every position of a slab. `width` is a multiple of 16.
-LILOC_WIDE void add_rows(std::int16_t* sums, const std::int8_t* rows, int count, int width, std::ptrdiff_t stride) {
+LILOC_WIDE void add_rows(std::int16_t* sums, const std::int8_t* rows, int count, int width,
+                         std::ptrdiff_t stride) {
   for (int r = 0; r < count; ++r, sums += width, rows += stride)
     for (int i = 0; i < width; ++i) sums[i] = static_cast<std::int16_t>(sums[i] + rows[i]);
 }
@@ -20,9 +21,12 @@ LILOC_WIDE void add_rows(std::int16_t* sums, const std::int8_t* rows, int count,
 class PaddedField {
  public:
   PaddedField(const ScoreField& field, int margin)
-      : margin_(margin), width_((field.size().x() + 15) / 16 * 16), height_(field.size().y()), depth_(field.size().z()),
-        stride_(width_ + 2 * margin), cells_(static_cast<std::size_t>(stride_) *
-                                             static_cast<std::size_t>((height_ + 2 * margin) * depth_)) {
+      : margin_(margin),
+        width_((field.size().x() + 15) / 16 * 16),
+        height_(field.size().y()),
+        depth_(field.size().z()),
+        stride_(width_ + 2 * margin),
+        cells_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>((height_ + 2 * margin) * depth_)) {
     for (int z = 0; z < depth_; ++z)
       for (int y = 0; y < height_; ++y)
         std::copy_n(field.row(y, z), field.size().x(), cells_.begin() + offset(0, y, z));
@@ -50,7 +54,9 @@ struct Cell {
   std::int16_t x, y, z, yaw;
 };
 
-bool better(const Cell& a, const Cell& b) { return a.score > b.score; }
+bool better(const Cell& a, const Cell& b) {
+  return a.score > b.score;
+}
 
 /// Keeps the best `capacity` cells seen.
 class Best {
@@ -77,7 +83,8 @@ void offer_maxima(const std::vector<std::int16_t>& sums, int width, int height, 
   const auto at = [&](int x, int y) {
     return x < 0 || y < 0 || x >= width || y >= height
                ? std::int16_t{-32768}
-               : sums[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+               : sums[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
   };
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -95,8 +102,8 @@ Eigen::Matrix3d yaw_rotation(double yaw_rad) {
 }
 
 /// Scores every position of one yaw.
-void search_yaw(const PaddedField& field, const std::vector<Eigen::Vector3f>& level_points, double cell_m, int yaw,
-                double yaw_rad, Best* best) {
+void search_yaw(const PaddedField& field, const std::vector<Eigen::Vector3f>& level_points, double cell_m,
+                int yaw, double yaw_rad, Best* best) {
   const Eigen::Matrix3f R = yaw_rotation(yaw_rad).cast<float>();
   const float inverse = static_cast<float>(1.0 / cell_m);
   std::vector<Eigen::Vector3i> offsets;
@@ -105,7 +112,8 @@ void search_yaw(const PaddedField& field, const std::vector<Eigen::Vector3f>& le
     const Eigen::Vector3i cell = ((R * p).array() * inverse).round().cast<int>();
     if (std::abs(cell.x()) <= field.margin() && std::abs(cell.y()) <= field.margin()) offsets.push_back(cell);
   }
-  std::vector<std::int16_t> sums(static_cast<std::size_t>(field.width()) * static_cast<std::size_t>(field.height()));
+  std::vector<std::int16_t> sums(static_cast<std::size_t>(field.width()) *
+                                 static_cast<std::size_t>(field.height()));
   for (int z = 0; z < field.depth(); ++z) {
     std::fill(sums.begin(), sums.end(), std::int16_t{0});
     for (const Eigen::Vector3i& o : offsets)
@@ -181,8 +189,8 @@ std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distan
   return kept;
 }
 
-std::vector<Candidate> gravity_search(const Target& target, const Query& query, const Eigen::Vector3d& up_sensor,
-                                      const GravitySearchOptions& options) {
+std::vector<Candidate> gravity_search(const Target& target, const Query& query,
+                                      const Eigen::Vector3d& up_sensor, const GravitySearchOptions& options) {
   const ScoreField& coarse = target->field_coarse();
   if (coarse.empty() || query.sparse.empty()) return {};
   const auto deadline = std::chrono::steady_clock::now() + options.time_limit;
@@ -203,7 +211,8 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query, 
   std::vector<Best> best(static_cast<std::size_t>(threads), Best(kFirstPass * options.keep));
   const auto work = [&](int worker) {  // fixed shares, so that the answer does not depend on scheduling
     for (int yaw = worker; yaw < yaws && std::chrono::steady_clock::now() < deadline; yaw += threads)
-      search_yaw(padded, first_points, coarse.cell_m(), yaw, yaw * 2 * M_PI / yaws, &best[static_cast<std::size_t>(worker)]);
+      search_yaw(padded, first_points, coarse.cell_m(), yaw, yaw * 2 * M_PI / yaws,
+                 &best[static_cast<std::size_t>(worker)]);
   };
   {
     std::vector<std::jthread> pool;
@@ -226,7 +235,8 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query, 
     const Eigen::Vector4d pose(position.x(), position.y(), position.z(), cell.yaw * 2 * M_PI / yaws);
     starts.push_back({pose, second.score(pose)});
   }
-  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.score > b.score; });
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.score > b.score; });
   if (starts.size() > options.keep) starts.resize(options.keep);
 
   std::vector<Candidate> candidates;

@@ -20,15 +20,15 @@ struct GravitySearchOptions {
 };
 
 /// With gravity known four unknowns remain: every x, y, z and yaw at 0.2 m and `yaw_step_deg` is scored on the
-/// target's coarse field by adding whole rows of it, with a third of the points at first; the best are scored with
-/// all and climbed on the fine field. `up_sensor`: unit vector
-/// against gravity in sensor axes. Past the time limit the yaws searched so far count. Needs the target's fields.
+/// target's coarse field by adding whole rows of it, with a third of the points at first; the best are scored
+/// with all and climbed on the fine field. `up_sensor`: unit vector against gravity in sensor axes. Past the
+/// time limit the yaws searched so far count. Needs the target's fields.
 [[nodiscard]] std::vector<Candidate> gravity_search(const Target& target, const Query& query,
                                                     const Eigen::Vector3d& up_sensor,
                                                     const GravitySearchOptions& options = {});
 
 /// Sorts by score and keeps the best of each group closer than `distance_m` and `angle_rad`.
-[[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distance_m, double angle_rad,
-                                              std::size_t most);
+[[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distance_m,
+                                              double angle_rad, std::size_t most);
 
 }  // namespace liloc

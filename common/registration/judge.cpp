@@ -7,8 +7,8 @@ namespace {
 
 constexpr double kConflictWeight = 8.0;
 
-/// The word of all ceiling views on one device point: one that measured a surface there outweighs one that, past an
-/// edge, looked by.
+/// The word of all ceiling views on one device point: one that measured a surface there outweighs one that,
+/// past an edge, looked by.
 Sight word_of(const std::vector<SightView>& views, const Eigen::Vector3f& p_map, float tolerance) {
   Sight word = Sight::unseen;
   for (const SightView& view : views) {
@@ -23,7 +23,8 @@ struct Counts {
   int agree = 0, conflict = 0;
 };
 
-Counts device_against_ceiling(const Target& target, const Cloud& points, const Eigen::Isometry3f& T, float tolerance) {
+Counts device_against_ceiling(const Target& target, const Cloud& points, const Eigen::Isometry3f& T,
+                              float tolerance) {
   Counts counts;
   for (const Eigen::Vector3f& point : points.points) {
     const Eigen::Vector3f p = T * point;
@@ -39,8 +40,8 @@ Counts device_against_ceiling(const Target& target, const Cloud& points, const E
   return counts;
 }
 
-Counts ceiling_against_device(const Target& target, const SightView& view, const Eigen::Isometry3f& T_sensor_map,
-                              float tolerance, std::size_t stride) {
+Counts ceiling_against_device(const Target& target, const SightView& view,
+                              const Eigen::Isometry3f& T_sensor_map, float tolerance, std::size_t stride) {
   Counts counts;
   for (std::size_t i = 0; i < target->coarse.size(); i += stride) {
     const Sight sight = view.look_sensor(T_sensor_map * target->coarse.points[i], tolerance);
@@ -63,8 +64,8 @@ Judgement judge(const Target& target, const Query& query, const Cloud& device_po
   result.conflict = device.conflict / count;
   result.score = result.agree - kConflictWeight * result.conflict;
   if (query.view.empty()) return result;
-  const Counts map = ceiling_against_device(target, query.view, T_map_sensor.inverse().cast<float>(), tolerance,
-                                            map_stride);
+  const Counts map =
+      ceiling_against_device(target, query.view, T_map_sensor.inverse().cast<float>(), tolerance, map_stride);
   const double seen = map.agree + map.conflict;
   if (seen > 0) {
     result.map_agree = map.agree / seen;

@@ -17,7 +17,8 @@ NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell
   if (box.isEmpty()) return;
   const Eigen::Vector3d size = (box.sizes().array() + 2 * static_cast<float>(reach_m)).cast<double>();
   const double blocks = size.prod() / std::pow(8 * cell_m, 3);
-  const auto cell = static_cast<float>(blocks > kMostBlocks ? cell_m * std::cbrt(blocks / kMostBlocks) : cell_m);
+  const auto cell =
+      static_cast<float>(blocks > kMostBlocks ? cell_m * std::cbrt(blocks / kMostBlocks) : cell_m);
   const float reach = std::max(static_cast<float>(reach_m), 0.9F * cell);  // a point owns at least its own cell
   inverse_ = 1.0F / cell;
   origin_ = box.min().array() - reach;
@@ -38,7 +39,8 @@ std::int32_t& NearestGrid::cell_at(const Eigen::Vector3i& cell) {
   return cells_[static_cast<std::size_t>(block)][cell_index(cell)];
 }
 
-void NearestGrid::stamp(const std::vector<Eigen::Vector3f>& points, std::int32_t index, float cell, float reach) {
+void NearestGrid::stamp(const std::vector<Eigen::Vector3f>& points, std::int32_t index, float cell,
+                        float reach) {
   const Eigen::Vector3f q = points[static_cast<std::size_t>(index)] - origin_;
   const Eigen::Vector3i lo = ((q.array() - reach) * inverse_).cast<int>().max(0);
   const Eigen::Vector3i hi = ((q.array() + reach) * inverse_).cast<int>().min(extent_.cast<int>().array() - 1);
@@ -53,7 +55,8 @@ void NearestGrid::stamp(const std::vector<Eigen::Vector3f>& points, std::int32_t
         if (squared > squared_reach) continue;
         std::int32_t& held = cell_at({x, y, z});
         const Eigen::Vector3f centre = origin_ + Eigen::Vector3f(dx, dy, dz) + q;
-        if (held == kNone || squared < (centre - points[static_cast<std::size_t>(held)]).squaredNorm()) held = index;
+        if (held == kNone || squared < (centre - points[static_cast<std::size_t>(held)]).squaredNorm())
+          held = index;
       }
     }
   }

@@ -7,9 +7,9 @@
 
 namespace liloc {
 
-/// Answers "which point is nearest?" with one table look-up: each cell within `reach_m` of a point holds the index
-/// of the point nearest to the cell's centre. Cells lie in blocks of 8x8x8 that exist only near points, so memory
-/// grows with surfaces, not with volume. Immutable; any thread may ask.
+/// Answers "which point is nearest?" with one table look-up: each cell within `reach_m` of a point holds the
+/// index of the point nearest to the cell's centre. Cells lie in blocks of 8x8x8 that exist only near points,
+/// so memory grows with surfaces, not with volume. Immutable; any thread may ask.
 class NearestGrid {
  public:
   static constexpr std::int32_t kNone = -1;

@@ -8,15 +8,17 @@
 
 namespace liloc {
 
-/// Finds the points within one fixed radius. Points are sorted by cells of that radius and the cells hashed, so a
-/// query reads 27 short runs of memory. The points are copied, finite ones only are found; any thread may query.
+/// Finds the points within one fixed radius. Points are sorted by cells of that radius and the cells hashed, so
+/// a query reads 27 short runs of memory. The points are copied, finite ones only are found; any thread may
+/// query.
 class RadiusSearch {
  public:
   RadiusSearch(const std::vector<Eigen::Vector3f>& points, double radius_m);
 
   [[nodiscard]] float radius_m() const { return radius_; }
 
-  /// Calls visit(index into the given points, squared distance) for each point within the radius, in fixed order.
+  /// Calls visit(index into the given points, squared distance) for each point within the radius, in fixed
+  /// order.
   template <class Visit>
   void for_each(const Eigen::Vector3f& query, Visit&& visit) const {
     const Eigen::Vector3i centre = cell_of(query, inverse_);
@@ -32,8 +34,9 @@ class RadiusSearch {
         }
   }
 
-  /// Calls visit(indices of the cell's points, visitor of candidates) for each occupied cell; the visitor calls its
-  /// argument with every point of the cell and its 26 neighbours: all that can lie within the radius of any of them.
+  /// Calls visit(indices of the cell's points, visitor of candidates) for each occupied cell; the visitor calls
+  /// its argument with every point of the cell and its 26 neighbours: all that can lie within the radius of any
+  /// of them.
   template <class Visit>
   void for_each_cell(Visit&& visit) const {
     for (const Run& run : table_) {

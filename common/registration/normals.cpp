@@ -19,8 +19,8 @@ struct Nearby {
   }
 };
 
-/// Count, sums and sums of products of the offsets from `p` within the radius. Relative to `p`, single precision
-/// loses nothing.
+/// Count, sums and sums of products of the offsets from `p` within the radius. Relative to `p`, single
+/// precision loses nothing.
 LILOC_WIDE std::array<float, 10> moments(const float* xs, const float* ys, const float* zs, int count, float px,
                                          float py, float pz, float squared_radius) {
   float n = 0, sx = 0, sy = 0, sz = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
@@ -68,8 +68,8 @@ Cloud with_normals(const Cloud& cloud, const Eigen::Vector3f& sensor_position, c
     });
     for (const std::uint32_t i : own) {
       const Eigen::Vector3f& p = cloud.points[i];
-      const auto m = moments(nearby.x.data(), nearby.y.data(), nearby.z.data(), static_cast<int>(nearby.x.size()),
-                             p.x(), p.y(), p.z(), squared_radius);
+      const auto m = moments(nearby.x.data(), nearby.y.data(), nearby.z.data(),
+                             static_cast<int>(nearby.x.size()), p.x(), p.y(), p.z(), squared_radius);
       if (m[0] < static_cast<float>(options.min_neighbors)) continue;
       const Eigen::Vector3f normal = thinnest_direction(m).stableNormalized();
       normals[i] = normal.dot(sensor_position - p) < 0 ? Eigen::Vector3f(-normal) : normal;

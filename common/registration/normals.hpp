@@ -8,9 +8,9 @@ struct NormalOptions {
   int min_neighbors = 5;    ///< fewer (the point itself counts) hang in the air: the point is dropped
 };
 
-/// The points that have enough neighbours, each with the direction in which its neighbourhood is thinnest (PCA),
-/// turned towards `sensor_position` (the frame of the cloud): a normal that is known to face the sensor lifts the
-/// share of right feature matches by half.
+/// The points that have enough neighbours, each with the direction in which its neighbourhood is thinnest
+/// (PCA), turned towards `sensor_position` (the frame of the cloud): a normal that is known to face the sensor
+/// lifts the share of right feature matches by half.
 [[nodiscard]] Cloud with_normals(const Cloud& cloud, const Eigen::Vector3f& sensor_position,
                                  const NormalOptions& options = {});
 

@@ -86,7 +86,8 @@ Pose moved(const Pose& T, const Vector6d& step) {
 /// Pulls towards the prior, in the same axes as the pairs: about the source's origin.
 void add_prior(const PosePrior& prior, const Pose& T, Normals* sum) {
   const double variance = prior.residual_sd_m * prior.residual_sd_m;
-  const double w_rotation = variance / (prior.sd_rad * prior.sd_rad), w_shift = variance / (prior.sd_m * prior.sd_m);
+  const double w_rotation = variance / (prior.sd_rad * prior.sd_rad),
+               w_shift = variance / (prior.sd_m * prior.sd_m);
   const Eigen::Vector3d turn = so3_log(T.linear() * prior.T_target_source.linear().transpose());
   sum->H.topLeftCorner<3, 3>().diagonal().array() += w_rotation;
   sum->H.bottomRightCorner<3, 3>().diagonal().array() += w_shift;
@@ -136,12 +137,13 @@ Alignment refine(const Target& target, const Query& query, const Pose& T_target_
   Alignment result;
   Pose T = T_target_source_guess;
   const double middle_m = std::min(options.start_distance_m, 2 * options.end_distance_m);
-  iterate({target->coarse, target->nearest_coarse, query.sparse}, options.sparse_iterations, options.start_distance_m,
-          middle_m, options, prior, &T);
-  iterate({target->coarse, target->nearest_coarse, query.medium}, options.coarse_iterations, middle_m, middle_m, options,
-          prior, &T);
+  iterate({target->coarse, target->nearest_coarse, query.sparse}, options.sparse_iterations,
+          options.start_distance_m, middle_m, options, prior, &T);
+  iterate({target->coarse, target->nearest_coarse, query.medium}, options.coarse_iterations, middle_m, middle_m,
+          options, prior, &T);
   const Side fine{target->cloud, target->nearest, query.medium};
-  result.converged = iterate(fine, options.fine_iterations, middle_m, options.end_distance_m, options, prior, &T);
+  result.converged =
+      iterate(fine, options.fine_iterations, middle_m, options.end_distance_m, options, prior, &T);
   result.T_target_source = normalized(T);
 
   const Normals sum = accumulate(fine, result.T_target_source, options.end_distance_m, options);

@@ -4,23 +4,24 @@
 namespace liloc {
 
 struct RefineOptions {
-  double start_distance_m = 0.30;  ///< farther pairs are ignored at first ...
-  double end_distance_m = 0.08;    ///< ... and at last
-  int sparse_iterations = 10;      ///< few device points against the thinned target: far from the answer
-  int coarse_iterations = 6;       ///< thinned clouds, at distances down to twice the end
-  int fine_iterations = 8;         ///< thinned device cloud against the full target
+  double start_distance_m = 0.30;     ///< farther pairs are ignored at first ...
+  double end_distance_m = 0.08;       ///< ... and at last
+  int sparse_iterations = 10;         ///< few device points against the thinned target: far from the answer
+  int coarse_iterations = 6;          ///< thinned clouds, at distances down to twice the end
+  int fine_iterations = 8;            ///< thinned device cloud against the full target
   double min_normal_agreement = 0.5;  ///< cosine between the two normals of a pair
-  bool point_to_point = false;     ///< the paper's ICP, for comparison
+  bool point_to_point = false;        ///< the paper's ICP, for comparison
 };
 
 /// How well a pose fits. Where the pose itself is poor this is a graded result, not an error.
 struct Alignment {
   Pose T_target_source = Pose::Identity();
-  Matrix6d information = Matrix6d::Zero();  ///< 1/(rad, m)^2 in the source's axes, noise of the residuals taken out
-  double fitness = 0;         ///< share of source points with a target point within one voxel
-  double inlier_rmse_m = 0;   ///< distance along the normal, over those
+  Matrix6d information =
+      Matrix6d::Zero();      ///< 1/(rad, m)^2 in the source's axes, noise of the residuals taken out
+  double fitness = 0;        ///< share of source points with a target point within one voxel
+  double inlier_rmse_m = 0;  ///< distance along the normal, over those
   int pairs = 0;
-  double pair_share = 0;      ///< of the thinned source points
+  double pair_share = 0;  ///< of the thinned source points
   bool converged = false;
 };
 

@@ -57,7 +57,8 @@ void ScoreField::mark_free_space(const std::vector<SightView>& views) {
       for (int x = 0; x < size_.x(); ++x) {
         std::int8_t& held = cells_[index(x, y, z)];
         if (held != 0) continue;
-        const Eigen::Vector3f centre = origin_ + (Eigen::Vector3f(x, y, z).array() + 0.5F).matrix() * static_cast<float>(cell_);
+        const Eigen::Vector3f centre =
+            origin_ + (Eigen::Vector3f(x, y, z).array() + 0.5F).matrix() * static_cast<float>(cell_);
         for (const SightView& view : views)
           if (view.look(centre, tolerance) == Sight::conflict) {
             held = kFree;

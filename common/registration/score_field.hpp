@@ -8,8 +8,8 @@
 namespace liloc {
 
 /// What a device point is worth at each place of the room: up to +100 on a measured surface, kFree where the
-/// ceiling looked through empty space, 0 where nobody looked. A pose scores by one look-up per device point, free
-/// space included. x runs fastest; `at` outside the field is 0.
+/// ceiling looked through empty space, 0 where nobody looked. A pose scores by one look-up per device point,
+/// free space included. x runs fastest; `at` outside the field is 0.
 class ScoreField {
  public:
   static constexpr int kSurface = 100, kFree = -100;

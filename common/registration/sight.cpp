@@ -17,8 +17,8 @@ void SightView::prepare(const Camera& small) {
   bands_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), Band{});
 }
 
-SightView SightView::from_depth(const DepthImage& image, const Camera& camera, const Pose& T_sensor_world, int factor,
-                                double max_range_m) {
+SightView SightView::from_depth(const DepthImage& image, const Camera& camera, const Pose& T_sensor_world,
+                                int factor, double max_range_m) {
   SightView view;
   view.prepare(shrunk(camera, factor));
   view.T_sensor_world_ = T_sensor_world.cast<float>();
@@ -39,7 +39,8 @@ SightView SightView::from_depth(const DepthImage& image, const Camera& camera, c
   return view;
 }
 
-SightView SightView::from_cloud(const Cloud& cloud_sensor, const Camera& camera, double voxel_size_m, int width) {
+SightView SightView::from_cloud(const Cloud& cloud_sensor, const Camera& camera, double voxel_size_m,
+                                int width) {
   SightView view;
   view.prepare(shrunk(camera, std::max(1, (camera.width + width - 1) / width)));
   const auto half = static_cast<float>(0.6 * voxel_size_m);

@@ -22,10 +22,10 @@ class SightView {
  public:
   SightView() = default;
   /// `factor` pixels of the image make one of the view. T_sensor_world places world points before the sensor.
-  static SightView from_depth(const DepthImage& image, const Camera& camera, const Pose& T_sensor_world, int factor,
-                              double max_range_m);
-  /// Rebuilds the view of a device from its voxelized cloud (sensor frame): each voxel covers the pixels that its
-  /// size covers. Pixels without a point stay unseen.
+  static SightView from_depth(const DepthImage& image, const Camera& camera, const Pose& T_sensor_world,
+                              int factor, double max_range_m);
+  /// Rebuilds the view of a device from its voxelized cloud (sensor frame): each voxel covers the pixels that
+  /// its size covers. Pixels without a point stay unseen.
   static SightView from_cloud(const Cloud& cloud_sensor, const Camera& camera, double voxel_size_m, int width);
 
   /// `p` in the world frame of the view; `tolerance_m` for agreeing, twice that for a conflict.
@@ -37,12 +37,14 @@ class SightView {
     const float inverse_z = 1.0F / p.z();
     const float u = p.x() * inverse_z * fx_ + cx_, v = p.y() * inverse_z * fy_ + cy_;
     if (!(u >= 0 && v >= 0 && u < width_f_ && v < height_f_)) return Sight::unseen;
-    const Band& band = bands_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
+    const Band& band =
+        bands_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
     if (band.far == 0) return Sight::unseen;
     const float slack = tolerance_m + 0.01F * p.z();
     if (p.z() < band.near - slack) return p.z() < band.near - 2 * slack ? Sight::conflict : Sight::agrees;
-    return p.z() <= band.near + slack || (p.z() >= band.far - slack && p.z() <= band.far + slack) ? Sight::agrees
-                                                                                               : Sight::behind;
+    return p.z() <= band.near + slack || (p.z() >= band.far - slack && p.z() <= band.far + slack)
+               ? Sight::agrees
+               : Sight::behind;
   }
 
   [[nodiscard]] bool empty() const { return bands_.empty(); }

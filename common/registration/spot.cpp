@@ -15,14 +15,16 @@ std::vector<Candidate> FeatureProposer::propose(const SpotProblem& problem) cons
   FeatureSearchOptions options = options_;
   options.threads = problem.threads;
   options.seed = problem.seed;
-  return feature_search(problem.target, problem.target_described(), problem.query, problem.query_described(), options);
+  return feature_search(problem.target, problem.target_described(), problem.query, problem.query_described(),
+                        options);
 }
 
-Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor_guess, const JudgeOptions& options,
-                            const PosePrior* prior) {
+Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor_guess,
+                            const JudgeOptions& options, const PosePrior* prior) {
   Hypothesis h;
   h.alignment = refine(problem.target, problem.query, T_map_sensor_guess, options.refine, prior);
-  h.judgement = judge(problem.target, problem.query, problem.query.medium, h.T_map_sensor(), options.fine_tolerance_m);
+  h.judgement =
+      judge(problem.target, problem.query, problem.query.medium, h.T_map_sensor(), options.fine_tolerance_m);
   return h;
 }
 

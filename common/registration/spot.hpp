@@ -16,7 +16,7 @@ namespace liloc {
 struct SpotProblem {
   const Target& target;
   const Query& query;
-  std::optional<Eigen::Vector3d> up_sensor;      ///< against gravity
+  std::optional<Eigen::Vector3d> up_sensor;  ///< against gravity
   std::optional<Pose> T_map_sensor_predicted;
   std::function<const Described&()> target_described, query_described;
   std::uint64_t seed = 1;
@@ -64,7 +64,8 @@ struct JudgeOptions {
 };
 
 /// Judges candidates roughly, refines the best, judges them again: distinct hypotheses, best first.
-[[nodiscard]] std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector<Candidate> candidates,
+[[nodiscard]] std::vector<Hypothesis> judge_candidates(const SpotProblem& problem,
+                                                       std::vector<Candidate> candidates,
                                                        const JudgeOptions& options = {});
 
 /// Refines and judges a single pose, e.g. a predicted one.

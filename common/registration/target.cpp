@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kFineField_m = 0.1, kCoarseField_m = 0.2;
 
-/// About `count` points spread evenly in space: the coarsest voxel grid that still has so many, then a random cut.
+/// About `count` points spread evenly in space: the coarsest voxel grid that still has so many, then a random
+/// cut.
 Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, std::uint64_t seed) {
   Cloud thin = cloud;
   for (double size = 8 * voxel_size_m; size > voxel_size_m; size *= 0.75) {

@@ -1,5 +1,6 @@
 #pragma once
-// The two sides of a global registration, each with what is computed once and read by every proposer and the judge.
+// The two sides of a global registration, each with what is computed once and read by every proposer and the
+// judge.
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -22,7 +23,8 @@ class Surfaces {
   const Cloud coarse;  ///< at twice the voxel size
   const NearestGrid nearest, nearest_coarse;
 
-  /// What a device point is worth at each place, at 0.2 m and at 0.1 m: for searches. The first caller builds them.
+  /// What a device point is worth at each place, at 0.2 m and at 0.1 m: for searches. The first caller builds
+  /// them.
   [[nodiscard]] const ScoreField& field_coarse() const;
   [[nodiscard]] const ScoreField& field_fine() const;
 
@@ -47,9 +49,9 @@ struct Target {
 
 /// The device's cloud in its sensor frame.
 struct Query {
-  Cloud cloud;   ///< one point per voxel, normals towards the device
-  Cloud medium;  ///< at twice the voxel size: refinement and judgement
-  Cloud sparse;  ///< a few hundred points spread evenly in space: search
+  Cloud cloud;     ///< one point per voxel, normals towards the device
+  Cloud medium;    ///< at twice the voxel size: refinement and judgement
+  Cloud sparse;    ///< a few hundred points spread evenly in space: search
   SightView view;  ///< rebuilt from the cloud; empty when no camera is known
 };
 

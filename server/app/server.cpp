@@ -37,7 +37,8 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site
   std::unique_ptr<Server> server(new Server(options, std::move(site)));
   if (auto opened = server->open(options); !opened) return tl::unexpected(opened.error());
   server->dispatcher_->start();
-  server->preparer_ = std::jthread([raw = server.get()](const std::stop_token& stop) { raw->keep_prepared(stop); });
+  server->preparer_ =
+      std::jthread([raw = server.get()](const std::stop_token& stop) { raw->keep_prepared(stop); });
   return server;
 }
 

@@ -65,7 +65,8 @@ DepthImage Background::learn(const DepthImage& image) {
     const int u = static_cast<int>(i) % width_, v = static_cast<int>(i) / width_;
     for (int y = std::max(0, v - 1); y <= std::min(height_ - 1, v + 1); ++y)
       for (int x = std::max(0, u - 1); x <= std::min(width_ - 1, u + 1); ++x)
-        still.units[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)] = 0;
+        still.units[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                    static_cast<std::size_t>(x)] = 0;
   }
   return still;
 }

@@ -7,37 +7,37 @@
 namespace liloc {
 
 struct BackgroundOptions {
-  double settle_seconds = 2.0;   ///< what stands still for so long is part of the room (again)
-  double tolerance_m = 0.06;     ///< depths this close, plus 1 % of the depth, are the same surface
-  double forget_seconds = 1.0;   ///< a surface without any return for so long is forgotten
-  int most_averaged = 12;        ///< frames in a pixel's running mean
-  double fresh_share = 0.004;    ///< so much of the image changed: the room is to be derived anew at once ...
-  double small_share = 0.0005;   ///< ... or with the next renewal
+  double settle_seconds = 2.0;  ///< what stands still for so long is part of the room (again)
+  double tolerance_m = 0.06;    ///< depths this close, plus 1 % of the depth, are the same surface
+  double forget_seconds = 1.0;  ///< a surface without any return for so long is forgotten
+  int most_averaged = 12;       ///< frames in a pixel's running mean
+  double fresh_share = 0.004;   ///< so much of the image changed: the room is to be derived anew at once ...
+  double small_share = 0.0005;  ///< ... or with the next renewal
 };
 
 enum class Change { none, small, large };
 
-/// The room before one ceiling LiDAR without what moves. The LiDAR stands still, so each pixel has a history of its
-/// own: a return nearer than its surface, or where there was none, belongs to something that came by, until it has stood
-/// there for a while; two farther ones show that the old surface is gone. Surfaces are running means, so their noise shrinks with time. Not
-/// thread-safe.
+/// The room before one ceiling LiDAR without what moves. The LiDAR stands still, so each pixel has a history of
+/// its own: a return nearer than its surface, or where there was none, belongs to something that came by, until
+/// it has stood there for a while; two farther ones show that the old surface is gone. Surfaces are running
+/// means, so their noise shrinks with time. Not thread-safe.
 class Background {
  public:
   Background(const Camera& camera, const BackgroundOptions& options);
 
-  /// Learns from the next frame (rising stamps, the camera's size) and returns it with everything that moves taken
-  /// out (0), and a rim of one pixel around it.
+  /// Learns from the next frame (rising stamps, the camera's size) and returns it with everything that moves
+  /// taken out (0), and a rim of one pixel around it.
   [[nodiscard]] DepthImage learn(const DepthImage& image);
 
-  /// How much the surfaces have changed since the last call of `surfaces`; large also after the 3rd, 10th and 30th
-  /// frame, for what the means have gained.
+  /// How much the surfaces have changed since the last call of `surfaces`; large also after the 3rd, 10th and
+  /// 30th frame, for what the means have gained.
   [[nodiscard]] Change change() const;
   /// The surfaces as a depth image, stamped by the last frame.
   [[nodiscard]] DepthImage surfaces();
 
  private:
   struct Pixel {
-    float surface = 0, candidate = 0;  ///< units; 0: not seen yet
+    float surface = 0, candidate = 0;                   ///< units; 0: not seen yet
     float candidate_since_s = 0, missing_since_s = -1;  ///< -1: not missing
     std::uint8_t averaged = 0, candidates = 0;
   };

@@ -9,7 +9,9 @@ namespace {
 
 constexpr std::size_t kSnapshotsKept = 6, kRoomsKept = 3;  // a room's indices are some 20 MB, a snapshot 1 MB
 
-StampNs gap(StampNs a, StampNs b) { return a > b ? a - b : b - a; }
+StampNs gap(StampNs a, StampNs b) {
+  return a > b ? a - b : b - a;
+}
 
 /// Renders points into the LiDAR's own camera; the nearest point of a pixel wins.
 DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_sensor) {
@@ -17,7 +19,8 @@ DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_s
   image.units.assign(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), 0);
   for (const auto& p : cloud_sensor.points) {
     if (!p.allFinite() || p.z() <= 0) continue;
-    const double u = p.x() / p.z() * camera.fx + camera.cx + 0.5, v = p.y() / p.z() * camera.fy + camera.cy + 0.5;
+    const double u = p.x() / p.z() * camera.fx + camera.cx + 0.5,
+                 v = p.y() / p.z() * camera.fy + camera.cy + 0.5;
     const double units = p.z() / camera.depth_scale_m + 0.5;
     if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height && units >= 1 && units < 65535)) continue;
     std::uint16_t& held = image.units[static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
@@ -31,24 +34,28 @@ DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_s
 
 GlobalCloud::GlobalCloud(Site site, GlobalCloudOptions options)
     : site_(std::move(site)), options_(options), frames_(site_.global_lidars.size()) {
-  for (const GlobalLidar& lidar : site_.global_lidars) watches_.push_back({Background(lidar.camera, options_.background), nullptr, 0});
+  for (const GlobalLidar& lidar : site_.global_lidars)
+    watches_.push_back({Background(lidar.camera, options_.background), nullptr, 0});
 }
 
 Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
-  if (lidar >= site_.global_lidars.size()) return fail("LiDAR {} of {} does not exist", lidar, site_.global_lidars.size());
+  if (lidar >= site_.global_lidars.size())
+    return fail("LiDAR {} of {} does not exist", lidar, site_.global_lidars.size());
   const GlobalLidar& info = site_.global_lidars[lidar];
   if (image.width != info.camera.width || image.height != info.camera.height ||
       image.units.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
-    return fail("{}: depth image is {}x{} with {} values, the site says {}x{}", info.id, image.width, image.height,
-                image.units.size(), info.camera.width, info.camera.height);
+    return fail("{}: depth image is {}x{} with {} values, the site says {}x{}", info.id, image.width,
+                image.height, image.units.size(), info.camera.width, info.camera.height);
   {
     const std::scoped_lock lock(mutex_);
     auto& frames = frames_[lidar];
     if (!frames.empty() && image.stamp_ns <= frames.back()->stamp_ns())
-      return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns, frames.back()->stamp_ns());
+      return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns,
+                  frames.back()->stamp_ns());
     frames.push_back(watched(lidar, std::move(image)));
     const StampNs oldest = frames.back()->stamp_ns() - options_.keep_ns;
-    while (frames.size() > options_.max_frames_per_lidar || frames.front()->stamp_ns() < oldest) frames.pop_front();
+    while (frames.size() > options_.max_frames_per_lidar || frames.front()->stamp_ns() < oldest)
+      frames.pop_front();
   }
   arrived_.notify_all();
   return {};
@@ -84,7 +91,8 @@ std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame
 }
 
 Status GlobalCloud::add_points(std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor) {
-  if (lidar >= site_.global_lidars.size()) return fail("LiDAR {} of {} does not exist", lidar, site_.global_lidars.size());
+  if (lidar >= site_.global_lidars.size())
+    return fail("LiDAR {} of {} does not exist", lidar, site_.global_lidars.size());
   return add_depth(lidar, rendered(site_.global_lidars[lidar].camera, stamp_ns, cloud_sensor));
 }
 
@@ -113,7 +121,8 @@ Result<std::shared_ptr<const Snapshot>> GlobalCloud::nearest(StampNs stamp_ns) {
     return newest == 0 ? fail("no ceiling LiDAR has sent a frame yet")
                        : fail("no ceiling frame within {:.0f} ms of the request; the newest is {:.0f} ms away",
                               to_ms(options_.match_ns), to_ms(newest - stamp_ns));
-  const auto known = std::find_if(snapshots_.begin(), snapshots_.end(), [&](const auto& s) { return s->frames() == frames; });
+  const auto known =
+      std::find_if(snapshots_.begin(), snapshots_.end(), [&](const auto& s) { return s->frames() == frames; });
   if (known != snapshots_.end()) return *known;
   const auto room = room_of(frames);
   snapshots_.push_back(std::make_shared<const Snapshot>(snapshot_stamp, std::move(frames), room));
@@ -130,7 +139,8 @@ void GlobalCloud::prepare() {
       if (!frames.empty()) newest = std::max(newest, frames.back()->stamp_ns());
     std::vector<Frame> frames;
     for (const auto& held : frames_)
-      if (!held.empty() && held.back()->stamp_ns() > newest - 2 * options_.match_ns) frames.push_back(held.back());
+      if (!held.empty() && held.back()->stamp_ns() > newest - 2 * options_.match_ns)
+        frames.push_back(held.back());
     if (frames.empty()) return;
     room = room_of(frames);
   }
@@ -141,7 +151,8 @@ bool GlobalCloud::settled(StampNs stamp_ns) const {
   bool any = false, passed = true;
   for (std::size_t lidar = 0; lidar < frames_.size(); ++lidar) {
     any = any || nearest_frame(lidar, stamp_ns) != nullptr;
-    passed = passed && !frames_[lidar].empty() && frames_[lidar].back()->stamp_ns() > stamp_ns + options_.match_ns;
+    passed =
+        passed && !frames_[lidar].empty() && frames_[lidar].back()->stamp_ns() > stamp_ns + options_.match_ns;
   }
   return any || passed;
 }

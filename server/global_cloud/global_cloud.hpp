@@ -18,10 +18,10 @@ namespace liloc {
 struct GlobalCloudOptions {
   SnapshotOptions snapshot;
   BackgroundOptions background;
-  bool drop_moving = true;                ///< what moves is not map: it neither registers nor contradicts
-  StampNs keep_ns = from_seconds(3.0);    ///< frames older than the newest by more than this are forgotten
+  bool drop_moving = true;                 ///< what moves is not map: it neither registers nor contradicts
+  StampNs keep_ns = from_seconds(3.0);     ///< frames older than the newest by more than this are forgotten
   StampNs renew_ns = from_seconds(4.0);    ///< small changes of the room are gathered for so long
-  StampNs match_ns = from_ms(100.0);      ///< farther from a request than this is no GPC (paper, section 5.3)
+  StampNs match_ns = from_ms(100.0);       ///< farther from a request than this is no GPC (paper, section 5.3)
   std::size_t max_frames_per_lidar = 128;  ///< a LiDAR that floods loses its oldest
 };
 
@@ -30,8 +30,8 @@ class GlobalCloud {
  public:
   GlobalCloud(Site site, GlobalCloudOptions options);
 
-  /// Takes a depth frame of LiDAR `lidar` (index into the site). Errors: the size differs from the site's, a stamp
-  /// that is not newer than the LiDAR's last. The frame is then left out and nothing changes.
+  /// Takes a depth frame of LiDAR `lidar` (index into the site). Errors: the size differs from the site's, a
+  /// stamp that is not newer than the LiDAR's last. The frame is then left out and nothing changes.
   [[nodiscard]] Status add_depth(std::size_t lidar, DepthImage image);
   /// The same for a LiDAR that streams points (sensor frame): they are rendered into its camera.
   [[nodiscard]] Status add_points(std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor);
@@ -40,8 +40,8 @@ class GlobalCloud {
   /// Error: no LiDAR has one. The snapshot's own stamp is that of its nearest frame.
   [[nodiscard]] Result<std::shared_ptr<const Snapshot>> nearest(StampNs stamp_ns);
 
-  /// Builds what the next snapshot will need of the room as it is now, so that no request has to wait for it. Costs
-  /// nothing while the room does not change. Called by a thread of its own.
+  /// Builds what the next snapshot will need of the room as it is now, so that no request has to wait for it.
+  /// Costs nothing while the room does not change. Called by a thread of its own.
   void prepare();
 
   /// Waits until `nearest` has an answer for the stamp, or newer frames show that it never will, or `limit` is
@@ -59,7 +59,7 @@ class GlobalCloud {
     std::shared_ptr<const LidarSurfaces> surfaces;
     int epoch = 0;
   };
-  [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);  ///< mutex_ held
+  [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);                             ///< mutex_ held
   [[nodiscard]] std::shared_ptr<const StitchedRoom> room_of(const std::vector<Frame>& frames);  ///< mutex_ held
   [[nodiscard]] Frame nearest_frame(std::size_t lidar, StampNs stamp_ns) const;  ///< null: none; mutex_ held
   [[nodiscard]] bool settled(StampNs stamp_ns) const;                            ///< mutex_ held
@@ -68,9 +68,10 @@ class GlobalCloud {
   const GlobalCloudOptions options_;
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
-  std::vector<std::deque<Frame>> frames_;                  ///< per LiDAR, by rising stamp
-  std::vector<Watch> watches_;                             ///< per LiDAR
-  int epoch_ = 0;  ///< raised when small changes have gathered: all LiDARs then renew together, at one rebuild's cost
+  std::vector<std::deque<Frame>> frames_;  ///< per LiDAR, by rising stamp
+  std::vector<Watch> watches_;             ///< per LiDAR
+  int epoch_ =
+      0;  ///< raised when small changes have gathered: all LiDARs then renew together, at one rebuild's cost
   StampNs epoch_since_ns_ = 0;
   std::deque<std::shared_ptr<const Snapshot>> snapshots_;  ///< asked for lately, newest last
   std::deque<std::shared_ptr<const StitchedRoom>> rooms_;  ///< of them

@@ -21,17 +21,19 @@ const Cloud& LidarSurfaces::cloud_map() const {
   std::call_once(once_, [this] {
     const auto cloud_sensor = depth_to_cloud(image_, lidar_.camera, options_.depth);
     if (!cloud_sensor) return log::error("{}: {}", lidar_.id, cloud_sensor.error().message);
-    const Cloud thin = with_normals(voxel_downsample(*cloud_sensor, options_.voxel_size_m), Eigen::Vector3f::Zero(),
-                                    {2.5 * options_.voxel_size_m, 5});
+    const Cloud thin = with_normals(voxel_downsample(*cloud_sensor, options_.voxel_size_m),
+                                    Eigen::Vector3f::Zero(), {2.5 * options_.voxel_size_m, 5});
     cloud_map_ = transformed(lidar_.T_map_sensor, thin);
   });
   return cloud_map_;
 }
 
-SightView LidarSurfaces::view() const { return view_of(image_, lidar_, options_); }
+SightView LidarSurfaces::view() const {
+  return view_of(image_, lidar_, options_);
+}
 
-LidarFrame::LidarFrame(DepthImage still, std::shared_ptr<const LidarSurfaces> surfaces, const GlobalLidar& lidar,
-                       const SnapshotOptions& options)
+LidarFrame::LidarFrame(DepthImage still, std::shared_ptr<const LidarSurfaces> surfaces,
+                       const GlobalLidar& lidar, const SnapshotOptions& options)
     : still_(std::move(still)), surfaces_(std::move(surfaces)), lidar_(lidar), options_(options) {}
 
 const SightView& LidarFrame::view() const {
@@ -47,8 +49,8 @@ const std::shared_ptr<const Surfaces>& StitchedRoom::surfaces() const {
       append(stitched, part->cloud_map());
       views.push_back(part->view());
     }
-    surfaces_ = std::make_shared<const Surfaces>(voxel_downsample(stitched, options_.voxel_size_m), std::move(views),
-                                                 options_.voxel_size_m);
+    surfaces_ = std::make_shared<const Surfaces>(voxel_downsample(stitched, options_.voxel_size_m),
+                                                 std::move(views), options_.voxel_size_m);
   });
   return surfaces_;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// One moment of the room: what each ceiling LiDAR sees, and the surfaces that this moment shares with its neighbours.
+// One moment of the room: what each ceiling LiDAR sees, and the surfaces that this moment shares with its
+// neighbours.
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -18,8 +19,8 @@ struct SnapshotOptions {
   double feature_sampling = 0.5;  ///< share of the thinned GPC's points that get a descriptor
 };
 
-/// The surfaces before one LiDAR, as long as they do not change: shared by all frames of that time. The cloud is
-/// derived when first asked for. Immutable; any thread may ask.
+/// The surfaces before one LiDAR, as long as they do not change: shared by all frames of that time. The cloud
+/// is derived when first asked for. Immutable; any thread may ask.
 class LidarSurfaces {
  public:
   /// `lidar` outlives this; the image's size is the camera's.
@@ -37,7 +38,8 @@ class LidarSurfaces {
   mutable Cloud cloud_map_;
 };
 
-/// A ceiling LiDAR's frame: its surfaces, and its lines of sight at this very moment, past everything that moves.
+/// A ceiling LiDAR's frame: its surfaces, and its lines of sight at this very moment, past everything that
+/// moves.
 class LidarFrame {
  public:
   LidarFrame(DepthImage still, std::shared_ptr<const LidarSurfaces> surfaces, const GlobalLidar& lidar,
@@ -57,7 +59,8 @@ class LidarFrame {
   mutable SightView view_;
 };
 
-/// The GPC stitched from the surfaces of all LiDARs, with its indices and descriptors, each built by its first user.
+/// The GPC stitched from the surfaces of all LiDARs, with its indices and descriptors, each built by its first
+/// user.
 class StitchedRoom {
  public:
   using Parts = std::vector<std::shared_ptr<const LidarSurfaces>>;

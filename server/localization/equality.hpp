@@ -22,18 +22,19 @@ struct EqualityThresholds {
 [[nodiscard]] bool equal(const SpotPose& a, const SpotPose& b, const EqualityThresholds& thresholds);
 
 enum class Verdict {
-  all_agree,     ///< at least two checks hold and so all three spots are tied together
-  one_corrected, ///< one check holds: the third spot was wrong and is corrected by the local transforms
-  none           ///< no check holds: no answer
+  all_agree,      ///< at least two checks hold and so all three spots are tied together
+  one_corrected,  ///< one check holds: the third spot was wrong and is corrected by the local transforms
+  none            ///< no check holds: no answer
 };
 
 struct Verification {
-  std::array<bool, 3> checks{};           ///< G2 = L1 G1, G3 = L2 G2, G3 = L2 (L1 G1)
+  std::array<bool, 3> checks{};  ///< G2 = L1 G1, G3 = L2 G2, G3 = L2 (L1 G1)
   Verdict verdict = Verdict::none;
-  std::optional<std::size_t> wrong;       ///< index of the corrected spot
-  std::array<Pose, 3> T_map_sensor;       ///< after correction; as given when the verdict is none
+  std::optional<std::size_t> wrong;  ///< index of the corrected spot
+  std::array<Pose, 3> T_map_sensor;  ///< after correction; as given when the verdict is none
 };
 
-[[nodiscard]] Verification verify(const std::array<SpotPose, 3>& spots, const EqualityThresholds& thresholds = {});
+[[nodiscard]] Verification verify(const std::array<SpotPose, 3>& spots,
+                                  const EqualityThresholds& thresholds = {});
 
 }  // namespace liloc

@@ -64,7 +64,8 @@ SpotReply Localizer::locate(const SpotRequest& request) {
   SpotReply reply;
   try {
     reply = impl_->answer(request);
-  } catch (const std::exception& trouble) {  // out of memory, a library's complaint: the client still gets an answer
+  } catch (
+      const std::exception& trouble) {  // out of memory, a library's complaint: the client still gets an answer
     log::error("request {} of {}: {}", request.seq, request.client_id, trouble.what());
     reply = refusal(request, Reason::not_found, "the server failed on this request");
   }

@@ -16,9 +16,9 @@ enum class Method { liloc, dynamic_noopt, dynamic_nover, static_noopt };
 struct LocalizerOptions {
   Method method = Method::liloc;
   double voxel_size_m = 0.05;
-  double sampling = 0.5;        ///< share of points with features that RANSAC uses (paper, section 5.2)
-  std::uint64_t seed = 1;       ///< all randomness comes from it, the client id and the request's seq
-  int threads = 1;              ///< per request
+  double sampling = 0.5;   ///< share of points with features that RANSAC uses (paper, section 5.2)
+  std::uint64_t seed = 1;  ///< all randomness comes from it, the client id and the request's seq
+  int threads = 1;         ///< per request
   std::string server_id = "liloc";
 };
 

@@ -43,8 +43,9 @@ void Session::start_segment(std::uint32_t segment) {
 bool Session::conclusive(const std::vector<Hypothesis>& found) const {
   if (found.empty()) return false;
   const Judgement& best = found.front().judgement;
-  return fits(found.front(), verify_.tracks) && best.agree >= verify_.conclusive_agree && best.overlap() >= verify_.conclusive_overlap &&
-         best.map_agree >= verify_.conclusive_overlap && margin_of(found) >= verify_.conclusive_margin;
+  return fits(found.front(), verify_.tracks) && best.agree >= verify_.conclusive_agree &&
+         best.overlap() >= verify_.conclusive_overlap && best.map_agree >= verify_.conclusive_overlap &&
+         margin_of(found) >= verify_.conclusive_margin;
 }
 
 void Session::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
@@ -64,10 +65,12 @@ void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* re
   conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
 }
 
-/// Verified or why not yet: the three equality checks among the spots' own answers, and a lead over every rival.
+/// Verified or why not yet: the three equality checks among the spots' own answers, and a lead over every
+/// rival.
 std::optional<Session::Decision> Session::decide(const Spot& spot, const std::vector<Hypothesis>& found) const {
   if (!followed_ && conclusive(found))  // one spot never outvotes a track that still holds
-    return Decision{Reason::conclusive, found.front().T_map_sensor() * spot.T_odom_sensor().inverse(), found.front()};
+    return Decision{Reason::conclusive, found.front().T_map_sensor() * spot.T_odom_sensor().inverse(),
+                    found.front()};
   const Track& best = tracks_.best_first().front();
   const auto spots = static_cast<double>(tracks_.spots());
   if (best.supports() < verify_.spots || !best.fits.back() || own_answers_.size() < 3) return std::nullopt;
@@ -77,11 +80,14 @@ std::optional<Session::Decision> Session::decide(const Spot& spot, const std::ve
   const SpotPose newest{v.T_map_sensor[2], own_answers_[2].T_odom_sensor};
   const SpotPose tracked{best.T_map_odom * newest.T_odom_sensor, newest.T_odom_sensor};
   if (!equal(tracked, newest, verify_.equality)) return std::nullopt;
-  return Decision{v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed, best.T_map_odom, best.latest};
+  return Decision{v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed, best.T_map_odom,
+                  best.latest};
 }
 
-/// Searches the whole room from this spot and lets all tracks weigh it; locks on and returns why once that is safe.
-std::optional<Session::Decision> Session::search_room(const std::shared_ptr<const Spot>& spot, std::vector<Hypothesis>* found) {
+/// Searches the whole room from this spot and lets all tracks weigh it; locks on and returns why once that is
+/// safe.
+std::optional<Session::Decision> Session::search_room(const std::shared_ptr<const Spot>& spot,
+                                                      std::vector<Hypothesis>* found) {
   *found = search(*spot, options_);
   spots_since_search_ = 0;
   if (found->empty()) return std::nullopt;
@@ -111,11 +117,15 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
   }
   const bool few = tracks_.spots() < static_cast<std::size_t>(verify_.spots);
   const bool led = tracks_.lead() >= verify_.lead_per_spot * static_cast<double>(tracks_.spots());
-  conclude(SpotStatus::provisional, few ? Reason::awaiting_spots : led ? Reason::inconsistent : Reason::ambiguous, reply);
+  conclude(SpotStatus::provisional,
+           few   ? Reason::awaiting_spots
+           : led ? Reason::inconsistent
+                 : Reason::ambiguous,
+           reply);
 }
 
-/// Refines the predicted pose, held by odometry as far as the track is sure of itself. True when free space bears
-/// the answer out; otherwise the prediction is the better answer.
+/// Refines the predicted pose, held by odometry as far as the track is sure of itself. True when free space
+/// bears the answer out; otherwise the prediction is the better answer.
 bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* reply) {
   sd_rad_ = std::hypot(sd_rad_, std::max(request.odom_sd_rad, verify_.step_sd_rad));
   sd_m_ = std::hypot(sd_m_, std::max(request.odom_sd_m, verify_.step_sd_m));
@@ -135,13 +145,15 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
   return true;
 }
 
-void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
+                              SpotReply* reply) {
   const bool good = follow(request, *spot, reply);
   followed_ = good;
   weak_in_a_row_ = good ? 0 : weak_in_a_row_ + 1;
-  conclude(good ? SpotStatus::verified : SpotStatus::provisional, good ? Reason::confirmed : Reason::weak, reply);
-  // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that was
-  // lifted and put elsewhere must not be believed for long.
+  conclude(good ? SpotStatus::verified : SpotStatus::provisional, good ? Reason::confirmed : Reason::weak,
+           reply);
+  // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that
+  // was lifted and put elsewhere must not be believed for long.
   if (++spots_since_search_ >= verify_.research_every || weak_in_a_row_ >= 2) {
     std::vector<Hypothesis> found;
     if (const auto decision = search_room(spot, &found)) {

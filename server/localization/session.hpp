@@ -14,21 +14,23 @@ namespace liloc {
 struct VerifyOptions {
   EqualityThresholds equality;
   TrackOptions tracks;
-  int spots = 3;                    ///< the paper's number
-  double lead_per_spot = 0.08;      ///< of the best track over the second, over the spots in memory
-  double conclusive_margin = 0.45;  ///< of one spot alone: score over the runner-up's ...
-  double conclusive_agree = 0.45;   ///< ... share of device points on seen surfaces ...
+  int spots = 3;                      ///< the paper's number
+  double lead_per_spot = 0.08;        ///< of the best track over the second, over the spots in memory
+  double conclusive_margin = 0.45;    ///< of one spot alone: score over the runner-up's ...
+  double conclusive_agree = 0.45;     ///< ... share of device points on seen surfaces ...
   double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
-  double locked_sd_rad = radians(2.0), locked_sd_m = 0.10;   ///< of map -> odom when it was just verified
-  double spot_sd_rad = radians(0.25), spot_sd_m = 0.012;     ///< of a well-observed spot, crowds and all
-  double step_sd_rad = radians(0.2), step_sd_m = 0.008;      ///< least growth between spots: calibration and clocks err too
-  int research_every = 6;           ///< while tracking, every so many spots the whole room is searched
+  double locked_sd_rad = radians(2.0), locked_sd_m = 0.10;  ///< of map -> odom when it was just verified
+  double spot_sd_rad = radians(0.25), spot_sd_m = 0.012;    ///< of a well-observed spot, crowds and all
+  double step_sd_rad = radians(0.2),
+         step_sd_m = 0.008;  ///< least growth between spots: calibration and clocks err too
+  int research_every = 6;    ///< while tracking, every so many spots the whole room is searched
 };
 
 /// One client's session. `mutex` is held by whoever answers one of its requests.
 class Session {
  public:
-  explicit Session(const LocalizerOptions& options, VerifyOptions verify = {}) : options_(options), verify_(verify) {}
+  explicit Session(const LocalizerOptions& options, VerifyOptions verify = {})
+      : options_(options), verify_(verify) {}
 
   std::mutex mutex;
 

@@ -33,7 +33,8 @@ std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypo
 
 }  // namespace
 
-Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request, std::shared_ptr<const Snapshot> snapshot,
+Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
+                                                 std::shared_ptr<const Snapshot> snapshot,
                                                  const LocalizerOptions& options) {
   const auto cloud = decode(request.lpc);
   if (!cloud) return tl::unexpected(cloud.error());
@@ -42,18 +43,20 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request, std
   spot->T_odom_sensor_ = request.T_odom_sensor;
   spot->query_ = make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed});
   if (spot->query_.cloud.size() < kFewestPoints)
-    return fail("the LPC has {} usable points; at least {} are needed", spot->query_.cloud.size(), kFewestPoints);
+    return fail("the LPC has {} usable points; at least {} are needed", spot->query_.cloud.size(),
+                kFewestPoints);
   Spot* raw = spot.get();
-  spot->problem_.emplace(SpotProblem{
-      spot->snapshot_->target(), spot->query_, request.up_sensor, std::nullopt,
-      [raw]() -> const Described& { return raw->snapshot_->described(); },
-      [raw, options]() -> const Described& {
-        std::call_once(raw->described_once_, [&] {
-          raw->described_ = describe(raw->query_.medium, {10 * options.voxel_size_m, kQueryFeatureShare, options.seed});
-        });
-        return raw->described_;
-      },
-      options.seed * 7919 + request.seq, options.threads});
+  spot->problem_.emplace(SpotProblem{spot->snapshot_->target(), spot->query_, request.up_sensor, std::nullopt,
+                                     [raw]() -> const Described& { return raw->snapshot_->described(); },
+                                     [raw, options]() -> const Described& {
+                                       std::call_once(raw->described_once_, [&] {
+                                         raw->described_ = describe(
+                                             raw->query_.medium,
+                                             {10 * options.voxel_size_m, kQueryFeatureShare, options.seed});
+                                       });
+                                       return raw->described_;
+                                     },
+                                     options.seed * 7919 + request.seq, options.threads});
   return spot;
 }
 
@@ -67,7 +70,8 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions&) {
   const SpotProblem& problem = spot.problem();
   std::vector<Hypothesis> found = judge_candidates(problem, GravityProposer().propose(problem));
   if (convincing(found)) return found;
-  return merged(std::move(found), judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem)));
+  return merged(std::move(found),
+                judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem)));
 }
 
 std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions& options) {

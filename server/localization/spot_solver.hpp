@@ -15,7 +15,8 @@ namespace liloc {
 class Spot {
  public:
   /// Error: the LPC cannot be decoded or has too few points.
-  static Result<std::shared_ptr<const Spot>> create(const SpotRequest& request, std::shared_ptr<const Snapshot> snapshot,
+  static Result<std::shared_ptr<const Spot>> create(const SpotRequest& request,
+                                                    std::shared_ptr<const Snapshot> snapshot,
                                                     const LocalizerOptions& options);
 
   [[nodiscard]] const SpotProblem& problem() const { return *problem_; }

@@ -12,9 +12,15 @@ bool near(const Pose& a, const Pose& b, double angle_rad, double distance) {
 
 }  // namespace
 
-double Track::total() const { return std::accumulate(scores.begin(), scores.end(), 0.0); }
-int Track::supports() const { return static_cast<int>(std::count(fits.begin(), fits.end(), true)); }
-int Track::own_finds() const { return static_cast<int>(std::count(found_own.begin(), found_own.end(), true)); }
+double Track::total() const {
+  return std::accumulate(scores.begin(), scores.end(), 0.0);
+}
+int Track::supports() const {
+  return static_cast<int>(std::count(fits.begin(), fits.end(), true));
+}
+int Track::own_finds() const {
+  return static_cast<int>(std::count(found_own.begin(), found_own.end(), true));
+}
 
 double bound_share(const Hypothesis& hypothesis) {
   return hypothesis.judgement.agree > 0 ? hypothesis.alignment.pair_share / hypothesis.judgement.agree : 0.0;
@@ -68,11 +74,13 @@ Track Tracks::founded(const Hypothesis& hypothesis) const {
 
 bool Tracks::same_place(const Track& a, const Track& b) const {
   const Pose& T_odom_sensor = spots_.back()->T_odom_sensor();
-  return near(a.T_map_odom * T_odom_sensor, b.T_map_odom * T_odom_sensor, 2 * options_.gate_rad, 2 * options_.gate_m);
+  return near(a.T_map_odom * T_odom_sensor, b.T_map_odom * T_odom_sensor, 2 * options_.gate_rad,
+              2 * options_.gate_m);
 }
 
 void Tracks::prune() {
-  std::stable_sort(tracks_.begin(), tracks_.end(), [](const Track& a, const Track& b) { return a.total() > b.total(); });
+  std::stable_sort(tracks_.begin(), tracks_.end(),
+                   [](const Track& a, const Track& b) { return a.total() > b.total(); });
   std::vector<Track> kept;
   for (Track& track : tracks_)
     if (kept.size() < options_.most_tracks &&

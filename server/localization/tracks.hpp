@@ -17,21 +17,22 @@ struct Track {
   Hypothesis latest;           ///< at the newest spot
 
   [[nodiscard]] double total() const;
-  [[nodiscard]] int supports() const;   ///< spots that fit
+  [[nodiscard]] int supports() const;  ///< spots that fit
   [[nodiscard]] int own_finds() const;
 };
 
 struct TrackOptions {
-  std::size_t memory = 5;        ///< spots
+  std::size_t memory = 5;  ///< spots
   std::size_t most_tracks = 6;
   double gate_rad = radians(6.0), gate_m = 0.25;  ///< how far a spot may lie from its prediction
-  double fits_agree = 0.12;      ///< least share of device points on seen surfaces
-  double fits_overlap = 0.93;    ///< least share of agreeing among judged device points
-  double fits_map_agree = 0.90;  ///< the same for ceiling points in the device's view
-  double fits_bound = 0.5;       ///< least share of agreeing points with a surface along their normal
+  double fits_agree = 0.12;                       ///< least share of device points on seen surfaces
+  double fits_overlap = 0.93;                     ///< least share of agreeing among judged device points
+  double fits_map_agree = 0.90;                   ///< the same for ceiling points in the device's view
+  double fits_bound = 0.5;  ///< least share of agreeing points with a surface along their normal
 };
 
-/// Whether free space and surfaces bear a pose out: points that lie where a surface was seen must also lie along it.
+/// Whether free space and surfaces bear a pose out: points that lie where a surface was seen must also lie
+/// along it.
 [[nodiscard]] bool fits(const Hypothesis& hypothesis, const TrackOptions& options);
 /// Share of the agreeing device points that found a surface with their own normal.
 [[nodiscard]] double bound_share(const Hypothesis& hypothesis);
@@ -52,7 +53,8 @@ class Tracks {
   [[nodiscard]] double lead() const;
 
  private:
-  void extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found, std::vector<bool>* taken) const;
+  void extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found,
+              std::vector<bool>* taken) const;
   [[nodiscard]] Track founded(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool same_place(const Track& a, const Track& b) const;
   void prune();

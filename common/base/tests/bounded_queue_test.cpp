@@ -50,9 +50,14 @@ TEST(BoundedQueue, EveryItemIsTakenDisplacedOrLeftExactlyOnce) {
   {
     std::vector<std::jthread> consumers, producers;
     for (int i = 0; i < 2; ++i)
-      consumers.emplace_back([&](const std::stop_token& stop) { while (queue.pop(stop)) ++taken; });
+      consumers.emplace_back([&](const std::stop_token& stop) {
+        while (queue.pop(stop)) ++taken;
+      });
     for (int p = 0; p < kProducers; ++p)
-      producers.emplace_back([&] { for (int i = 0; i < kItems; ++i) if (queue.push(i)) ++displaced; });
+      producers.emplace_back([&] {
+        for (int i = 0; i < kItems; ++i)
+          if (queue.push(i)) ++displaced;
+      });
     producers.clear();
     queue.close();
   }

@@ -13,7 +13,8 @@ DepthImage plane_image(const Eigen::Vector3d& normal, double d) {
   for (int v = 0; v < image.height; ++v)
     for (int u = 0; u < image.width; ++u) {
       const Eigen::Vector3d ray((u - kCamera.cx) / kCamera.fx, (v - kCamera.cy) / kCamera.fy, 1.0);
-      image.units.push_back(static_cast<std::uint16_t>(std::lround(d / normal.dot(ray) / kCamera.depth_scale_m)));
+      image.units.push_back(
+          static_cast<std::uint16_t>(std::lround(d / normal.dot(ray) / kCamera.depth_scale_m)));
     }
   return image;
 }

@@ -34,7 +34,8 @@ TEST_P(PoseLaw, TheDerivativeOfARotatedPointIsMinusItsSkew) {
     Vector6d step = Vector6d::Zero();
     step[axis] = 1e-6;
     const Eigen::Vector3d numeric = (increment(step) * p - increment(-step) * p) / 2e-6;
-    const Eigen::Vector3d analytic = axis < 3 ? Eigen::Vector3d(-skew(p).col(axis)) : Eigen::Vector3d::Unit(axis - 3);
+    const Eigen::Vector3d analytic =
+        axis < 3 ? Eigen::Vector3d(-skew(p).col(axis)) : Eigen::Vector3d::Unit(axis - 3);
     EXPECT_LT((numeric - analytic).norm(), 1e-7) << "axis " << axis;
   }
 }

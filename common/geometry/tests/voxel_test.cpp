@@ -35,7 +35,8 @@ TEST_P(VoxelLaw, AgreesWithPcl) {
   filter.setLeafSize(0.25F, 0.25F, 0.25F);
   pcl::PointCloud<pcl::PointXYZ> reference;
   filter.filter(reference);
-  std::vector<Eigen::Vector3f> expected = from_pcl(reference).points, ours = voxel_downsample(cloud, 0.25).points;
+  std::vector<Eigen::Vector3f> expected = from_pcl(reference).points,
+                               ours = voxel_downsample(cloud, 0.25).points;
   ASSERT_EQ(ours.size(), expected.size());
   sort_points(ours);
   sort_points(expected);

@@ -12,7 +12,9 @@
 namespace liloc {
 namespace {
 
-Cloud described_cloud(unsigned seed) { return watched_room(seed).query.medium; }
+Cloud described_cloud(unsigned seed) {
+  return watched_room(seed).query.medium;
+}
 
 std::vector<std::uint32_t> all_of(const Cloud& cloud) {
   std::vector<std::uint32_t> index(cloud.size());
@@ -36,7 +38,8 @@ TEST_P(FpfhLaw, AgreesWithPcl) {
   std::size_t differ = 0;
   for (std::size_t i = 0; i < ours.size(); ++i) {
     const Eigen::Map<const Eigen::Matrix<float, 33, 1>> expected(reference[i].histogram);
-    differ += (ours.descriptors.col(static_cast<Eigen::Index>(i)) - expected).norm() > 0.02F * expected.norm() + 1e-3F;
+    differ += (ours.descriptors.col(static_cast<Eigen::Index>(i)) - expected).norm() >
+              0.02F * expected.norm() + 1e-3F;
   }
   EXPECT_LE(differ, ours.size() / 50);  // an angle on the edge of a bin may fall to either side
 }
@@ -45,7 +48,8 @@ TEST_P(FpfhLaw, DoesNotChangeWhenTheCloudMoves) {
   const Cloud cloud = described_cloud(GetParam());
   Vector6d a;
   a << 0.4, -0.8, 1.1, 2, -3, 1;
-  const Features here = fpfh(cloud, all_of(cloud), 0.4), there = fpfh(transformed(increment(a), cloud), all_of(cloud), 0.4);
+  const Features here = fpfh(cloud, all_of(cloud), 0.4),
+                 there = fpfh(transformed(increment(a), cloud), all_of(cloud), 0.4);
   EXPECT_LT((here.descriptors - there.descriptors).norm(), 0.05F * here.descriptors.norm());
 }
 
@@ -55,7 +59,8 @@ TEST_P(FpfhLaw, APartIsDescribedAsInTheWhole) {
   const Features part = fpfh(cloud, sample_indices(cloud.size(), 0.2, GetParam()), 0.4);
   ASSERT_GT(part.size(), 10U);
   for (std::size_t i = 0; i < part.size(); ++i)
-    EXPECT_TRUE(part.descriptors.col(static_cast<Eigen::Index>(i)).isApprox(whole.descriptors.col(part.index[i])));
+    EXPECT_TRUE(
+        part.descriptors.col(static_cast<Eigen::Index>(i)).isApprox(whole.descriptors.col(part.index[i])));
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, FpfhLaw, testing::Range(1U, 4U));

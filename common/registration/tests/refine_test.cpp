@@ -33,7 +33,8 @@ TEST_P(RefineLaw, MovingTheSensorFrameMovesTheAnswerEqually) {
   const WatchedRoom w = watched_room(GetParam());
   const Pose T_sensor_moved = small_motion(GetParam() + 50, 0.3, 0.5);
   Query moved = w.query;
-  for (Cloud* cloud : {&moved.cloud, &moved.medium, &moved.sparse}) *cloud = transformed(T_sensor_moved.inverse(), *cloud);
+  for (Cloud* cloud : {&moved.cloud, &moved.medium, &moved.sparse})
+    *cloud = transformed(T_sensor_moved.inverse(), *cloud);
   const Pose guess = w.T_map_device * small_motion(GetParam(), radians(2), 0.08);
   const Pose here = refine(w.target, w.query, guess).T_target_source;
   const Pose there = refine(w.target, moved, guess * T_sensor_moved).T_target_source;
@@ -45,7 +46,8 @@ TEST_P(RefineLaw, PointToPointAlsoConverges) {
   const WatchedRoom w = watched_room(GetParam());
   RefineOptions options;
   options.point_to_point = true;
-  const Alignment a = refine(w.target, w.query, w.T_map_device * small_motion(GetParam(), radians(2), 0.05), options);
+  const Alignment a =
+      refine(w.target, w.query, w.T_map_device * small_motion(GetParam(), radians(2), 0.05), options);
   EXPECT_LT(distance_m(a.T_target_source, w.T_map_device), 0.10);
 }
 

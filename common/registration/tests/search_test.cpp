@@ -7,7 +7,9 @@
 namespace liloc {
 namespace {
 
-bool near(const Pose& a, const Pose& b) { return distance_m(a, b) < 0.1 && degrees(angle_between_rad(a, b)) < 3; }
+bool near(const Pose& a, const Pose& b) {
+  return distance_m(a, b) < 0.1 && degrees(angle_between_rad(a, b)) < 3;
+}
 
 class SearchLaw : public testing::TestWithParam<unsigned> {};
 
@@ -30,7 +32,8 @@ TEST_P(SearchLaw, OneThreadAndTwoFindTheSamePlace) {
 
 TEST_P(SearchLaw, FeaturesNeedNoGravityAndTheirCellsNoOrder) {
   const WatchedRoom w = watched_room(GetParam());
-  const Described room = describe(w.target->coarse, {0.5, 1.0, 1}), device = describe(w.query.medium, {0.5, 1.0, 1});
+  const Described room = describe(w.target->coarse, {0.5, 1.0, 1}),
+                  device = describe(w.query.medium, {0.5, 1.0, 1});
   FeatureSearchOptions options;
   const auto one = feature_search(w.target, room, w.query, device, options);
   options.threads = 2;
@@ -72,7 +75,8 @@ Cloud two_walls_and_a_box(unsigned seed) {
   Cloud cloud;
   for (double yaw = 0; yaw < 1.6; yaw += 0.5) {
     const Pose T = scene::looking({3, 2.5, 1.3}, yaw);
-    append(cloud, transformed(T, *depth_to_cloud(scene::render(room, T, scene::small_camera(), 1, 0.004, seed), scene::small_camera())));
+    append(cloud, transformed(T, *depth_to_cloud(scene::render(room, T, scene::small_camera(), 1, 0.004, seed),
+                                                 scene::small_camera())));
   }
   return transformed(scene::looking({3, 2.5, 1.3}, 0.7).inverse(), cloud);
 }

@@ -30,7 +30,8 @@ inline Target watch(const scene::BoxRoom& room, unsigned seed, double noise_m = 
   std::vector<SightView> views;
   for (const Pose& T_map_sensor : ceiling_poses()) {
     const DepthImage image = scene::render(room, T_map_sensor, camera, seed * 10 + views.size(), noise_m, seed);
-    const Cloud thin = with_normals(voxel_downsample(*depth_to_cloud(image, camera), 0.05), Eigen::Vector3f::Zero());
+    const Cloud thin =
+        with_normals(voxel_downsample(*depth_to_cloud(image, camera), 0.05), Eigen::Vector3f::Zero());
     append(stitched, transformed(T_map_sensor, thin));
     views.push_back(SightView::from_depth(image, camera, T_map_sensor.inverse(), 2, 8.5));
   }

@@ -40,8 +40,7 @@ int exit_code(pid_t pid, std::chrono::milliseconds limit = 20s) {
 }
 
 fs::path site_file() {
-  fs::path file =
-      fs::temp_directory_path() / ("liloc_program_test_" + std::to_string(getpid()) + ".json");
+  fs::path file = fs::temp_directory_path() / ("liloc_program_test_" + std::to_string(getpid()) + ".json");
   std::ofstream(file)
       << R"({"world_frame": "map", "global_lidars": [{"id": "ceiling0", "width": 32, "height": 24,
     "fx": 30, "fy": 30, "cx": 16, "cy": 12, "depth_scale": 0.001, "rate_hz": 10,

@@ -58,7 +58,8 @@ TEST(Background, ACalmRoomIsDerivedOnce) {
   (void)background.surfaces();
   for (int i = 1; i < 20; ++i) {
     (void)background.learn(with_visitor(0.15 * i, i, i + 6));
-    EXPECT_EQ(background.change(), i == 2 || i == 9 ? Change::large : Change::none) << "someone walks by at " << 0.15 * i;
+    EXPECT_EQ(background.change(), i == 2 || i == 9 ? Change::large : Change::none)
+        << "someone walks by at " << 0.15 * i;
   }
 }
 
@@ -93,9 +94,10 @@ TEST(Background, NoiseAndGapsMoveNothing) {
   for (int i = 0; i < 20; ++i) {
     DepthImage image = with_visitor(0.15 * i, 0, 0);
     for (std::size_t p = 0; p < image.units.size(); ++p)
-      image.units[p] = i > 0 && (p * 7 + static_cast<std::size_t>(i)) % 11 == 0
-                           ? std::uint16_t{0}
-                           : static_cast<std::uint16_t>(4000 + (p * 31 + static_cast<std::size_t>(i) * 17) % 60);
+      image.units[p] =
+          i > 0 && (p * 7 + static_cast<std::size_t>(i)) % 11 == 0
+              ? std::uint16_t{0}
+              : static_cast<std::uint16_t>(4000 + (p * 31 + static_cast<std::size_t>(i) * 17) % 60);
     const auto gaps = count(image, 0);
     EXPECT_EQ(count(background.learn(image), 0), gaps);
   }

@@ -33,7 +33,8 @@ TEST(GlobalCloud, MatchesTheNearestFramesWithin100Ms) {
   EXPECT_EQ((*snapshot)->frames().size(), 2U);
   EXPECT_EQ((*snapshot)->stamp_ns(), kT0 + from_ms(250));
   EXPECT_EQ(*cloud.nearest(kT0 + from_ms(262)), *snapshot) << "the same frames are the same snapshot";
-  EXPECT_EQ((*cloud.nearest(kT0 + from_ms(400)))->room(), (*snapshot)->room()) << "nothing moved: the same room";
+  EXPECT_EQ((*cloud.nearest(kT0 + from_ms(400)))->room(), (*snapshot)->room())
+      << "nothing moved: the same room";
   EXPECT_THAT(cloud.nearest(kT0 + from_ms(2000)).error().message, testing::HasSubstr("within 100 ms"));
 }
 

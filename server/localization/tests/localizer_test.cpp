@@ -94,8 +94,8 @@ TEST_P(LocalizerLaw, AColdRequestIsAnsweredOnItsOwn) {
   const SpotReply first = world.localizer->locate(request);
   ASSERT_TRUE(first.T_map_sensor);
   EXPECT_TRUE(near(*first.T_map_sensor, world.truth(0)) || (!first.verified() && first.margin < 0.1))
-      << name_of(first.reason) << " overlap " << first.overlap << " fitness " << first.fitness << " margin " << first.margin << " off "
-      << distance_m(*first.T_map_sensor, world.truth(0)) << " m "
+      << name_of(first.reason) << " overlap " << first.overlap << " fitness " << first.fitness << " margin "
+      << first.margin << " off " << distance_m(*first.T_map_sensor, world.truth(0)) << " m "
       << degrees(angle_between_rad(*first.T_map_sensor, world.truth(0))) << " deg";
   const SpotReply again = world.localizer->locate(request);
   EXPECT_TRUE(again.T_map_sensor->isApprox(*first.T_map_sensor)) << "nothing is remembered";
@@ -115,8 +115,9 @@ TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {
     const SpotReply reply = world.localizer->locate(world.request(k, elsewhere(k)));
     if (!reply.verified()) continue;
     EXPECT_TRUE(near(*reply.T_map_sensor, elsewhere(k)))
-        << "spot " << k << " " << name_of(reply.reason) << " overlap " << reply.overlap << " fitness " << reply.fitness << " off "
-        << distance_m(*reply.T_map_sensor, elsewhere(k)) << " m " << degrees(angle_between_rad(*reply.T_map_sensor, elsewhere(k))) << " deg";
+        << "spot " << k << " " << name_of(reply.reason) << " overlap " << reply.overlap << " fitness "
+        << reply.fitness << " off " << distance_m(*reply.T_map_sensor, elsewhere(k)) << " m "
+        << degrees(angle_between_rad(*reply.T_map_sensor, elsewhere(k))) << " deg";
     found = found || near(*reply.T_map_sensor, elsewhere(k));
   }
   EXPECT_TRUE(found);
@@ -154,8 +155,9 @@ TEST(Localizer, ADeviceOutsideTheCoveredAreaIsNeverVerified) {
       ASSERT_TRUE(world.cloud->add_depth(i, scene::render(seen, world.site.global_lidars[i].T_map_sensor,
                                                           scene::small_camera(), kT0 + k * kStep, 0.005, 5)));
     const SpotReply reply = world.localizer->locate(world.request(k, world.truth(k)));
-    EXPECT_FALSE(reply.verified()) << "spot " << k << " " << name_of(reply.reason) << " overlap " << reply.overlap << " fitness "
-                                   << reply.fitness << " margin " << reply.margin;
+    EXPECT_FALSE(reply.verified()) << "spot " << k << " " << name_of(reply.reason) << " overlap "
+                                   << reply.overlap << " fitness " << reply.fitness << " margin "
+                                   << reply.margin;
   }
 }
 
@@ -165,7 +167,8 @@ TEST(Localizer, GravityThatIsTenDegreesWrongIsSurvived) {
   for (int k = 0; k < 4; ++k) {
     world.watch(k);
     SpotRequest request = world.request(k, world.truth(k));
-    request.up_sensor = so3_exp({radians(10), 0, 0}) * world.truth(k).linear().transpose() * Eigen::Vector3d::UnitZ();
+    request.up_sensor =
+        so3_exp({radians(10), 0, 0}) * world.truth(k).linear().transpose() * Eigen::Vector3d::UnitZ();
     const SpotReply reply = world.localizer->locate(request);
     right += reply.T_map_sensor && near(*reply.T_map_sensor, world.truth(k));
     EXPECT_TRUE(!reply.verified() || near(*reply.T_map_sensor, world.truth(k)));

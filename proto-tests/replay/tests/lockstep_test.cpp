@@ -27,8 +27,7 @@ class Lockstep : public testing::Test {
     site.seconds = 5;
     site.still_seconds = 1;
     site.people = 1;
-    site.image_width = 160;
-    site.image_height = 120;
+    site.device_rate_hz = 10;
     const auto status = sim::write_recording(site, folder_->path() / "rec");
     ASSERT_TRUE(status) << status.error().message;
   }

@@ -47,9 +47,7 @@ class Live : public testing::Test {
     site.still_seconds = 1;
     site.people = 1;
     site.devices = 2;
-    site.device_rate_hz = 8;
-    site.image_width = 160;
-    site.image_height = 120;
+    site.device_rate_hz = 10;
     const auto status = sim::write_recording(site, rec_);
     ASSERT_TRUE(status) << status.error().message;
   }
@@ -85,7 +83,7 @@ TEST_F(Live, ReplayOverDdsLocatesBothDevices) {
     if (!kMeasured) continue;
     const auto& online = report["devices"][device]["online"];
     EXPECT_GT(online["coverage"], 0.5) << report.dump(1);
-    EXPECT_LT(online["mean_trans_m"], 0.15) << report.dump(1);
+    EXPECT_LT(online["mean_trans_m"], 0.1) << report.dump(1);
     EXPECT_EQ(report["devices"][device]["spots"]["verified_wrong"], 0);
   }
   EXPECT_THAT(processes_with(folder_.path()), testing::IsEmpty());

@@ -53,7 +53,7 @@ py::array_t<std::int64_t, py::array::c_style> stamps_of(const py::object& stamps
   const auto array = py::array::ensure(stamps_ns);
   const char kind = array ? array.dtype().kind() : 'O';
   if (kind != 'i' && kind != 'u')
-    throw py::type_error("stamps_ns must be integers of nanoseconds: a float64 would lose 200 ns and more");
+    throw py::type_error("stamps_ns must be integers of nanoseconds: a float64 is off by up to 128 ns");
   return py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
 }
 

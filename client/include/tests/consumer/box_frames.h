@@ -10,12 +10,13 @@ enum { FRAME_WIDTH = 160, FRAME_HEIGHT = 120, FRAME_COUNT = 30 };
 #define STEP_M 0.02    /* per frame, along x */
 #define TURN_RAD 0.008 /* per frame, about z */
 
-static int64_t frame_stamp_ns(int frame) {
+static inline int64_t frame_stamp_ns(int frame) {
   return INT64_C(1700000000000000000) + frame * INT64_C(66666667);
 }
 
 /* Distance along a ray to where it leaves (or, from outside, enters) a box; negative: it misses. */
-static double box_hit(const double low[3], const double high[3], const double from[3], const double along[3]) {
+static inline double box_hit(const double low[3], const double high[3], const double from[3],
+                             const double along[3]) {
   double enter = -1e9, leave = 1e9;
   for (int i = 0; i < 3; ++i) {
     double d = fabs(along[i]) < 1e-12 ? 1e-12 : along[i];
@@ -27,7 +28,7 @@ static double box_hit(const double low[3], const double high[3], const double fr
   return enter > 0 ? enter : leave;
 }
 
-static double nearest_hit(const double from[3], const double along[3]) {
+static inline double nearest_hit(const double from[3], const double along[3]) {
   static const double boxes[4][2][3] = {{{0, 0, 0}, {6, 5, 2.7}},
                                         {{4.2, 3.1, 0}, {4.9, 3.7, 1.1}},
                                         {{5.3, 2.0, 0}, {6.0, 2.6, 1.8}},
@@ -41,7 +42,7 @@ static double nearest_hit(const double from[3], const double along[3]) {
 }
 
 /* The camera looks at a corner, a little downwards. */
-static void render_frame(int frame, uint16_t* units) {
+static inline void render_frame(int frame, uint16_t* units) {
   const double yaw = 0.6 + frame * TURN_RAD, pitch = 0.25;
   const double from[3] = {1.8 + frame * STEP_M, 1.6, 1.2};
   const double ahead[3] = {cos(yaw) * cos(pitch), sin(yaw) * cos(pitch), -sin(pitch)};
@@ -57,18 +58,18 @@ static void render_frame(int frame, uint16_t* units) {
     }
 }
 
-static double walked_m(void) {
+static inline double walked_m(void) {
   return (FRAME_COUNT - 1) * STEP_M;
 }
-static double turned_rad(void) {
+static inline double turned_rad(void) {
   return (FRAME_COUNT - 1) * TURN_RAD;
 }
 
 /* Of poses as both APIs give them. */
-static double distance_m(const double a[3], const double b[3]) {
+static inline double distance_m(const double a[3], const double b[3]) {
   return sqrt(pow(a[0] - b[0], 2) + pow(a[1] - b[1], 2) + pow(a[2] - b[2], 2));
 }
-static double angle_rad(const double p[4], const double q[4]) {
+static inline double angle_rad(const double p[4], const double q[4]) {
   return 2 * acos(fmin(1.0, fabs(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])));
 }
 #endif

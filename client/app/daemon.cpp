@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include "common/wire/sensors.hpp"
 
@@ -9,26 +10,6 @@ namespace liloc {
 namespace {
 
 using namespace std::chrono_literals;
-
-Pose to_domain(const client::Pose& T) {
-  Pose pose = Pose::Identity();
-  const auto& q = T.rotation_xyzw;
-  pose.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
-  pose.translation() = Eigen::Vector3d(T.translation_m.data());
-  return pose;
-}
-
-const char* name_of(client::State state) {
-  switch (state) {
-    case client::State::searching:
-      return "searching";
-    case client::State::tracking:
-      return "tracking";
-    case client::State::coasting:
-      return "coasting";
-  }
-  return "unknown";
-}
 
 }  // namespace
 
@@ -51,14 +32,14 @@ Daemon::~Daemon() {
 Status Daemon::join() {
   wire::DomainOptions domain;
   domain.domain = options_.client.domain;
-  domain.role = options_.ros ? wire::Role::peer : wire::Role::client;
+  domain.role = options_.ros.enabled ? wire::Role::peer : wire::Role::client;
   domain.interface = options_.client.network_interface;
   domain.peers = options_.client.peers;
   auto joined = wire::Participant::create(domain);
   if (!joined) return tl::unexpected(joined.error());
   participant_ = std::move(*joined);
-  if (!options_.ros) return {};
-  auto ros = wire::PosePublisher::create(*participant_, options_.client.id);
+  if (!options_.ros.enabled) return {};
+  auto ros = RosFace::create(*participant_, options_);
   if (!ros) return tl::unexpected(ros.error());
   ros_ = std::move(*ros);
   return {};
@@ -69,15 +50,14 @@ Status Daemon::find_camera(const std::function<bool()>& give_up) {
   if (!dispatcher) return tl::unexpected(dispatcher.error());
   std::mutex mutex;
   std::optional<Camera> found;
-  const Status ok =
-      wire::subscribe_camera_info(**dispatcher, options_.client.id, [&](const Result<Camera>& camera) {
+  const Status ok = wire::subscribe_camera_info_at(
+      **dispatcher, options_.topics.camera_info, [&](const Result<Camera>& camera) {
         if (!camera) return log::warning("camera_info: {}", camera.error().message);
         const std::scoped_lock lock(mutex);
         found = *camera;
       });
   if (!ok) return ok;
-  log::info("waiting for the intrinsics on rt/{}/depth/camera_info; --device gives them at once",
-            options_.client.id);
+  log::info("waiting for the intrinsics on {}; --device gives them at once", options_.topics.camera_info);
   (*dispatcher)->start();
   for (bool done = false; !done && !give_up(); std::this_thread::sleep_for(20ms)) {
     const std::scoped_lock lock(mutex);
@@ -91,44 +71,58 @@ Status Daemon::find_camera(const std::function<bool()>& give_up) {
 }
 
 Status Daemon::open_client() {
-  if (options_.client.local != client::Local::cloud && !options_.client.T_imu_sensor) {
+  const client::Local local = options_.client.local;
+  if ((local == client::Local::inertial || local == client::Local::dead_reckoning) &&
+      !options_.client.T_imu_sensor) {
     log::warning("{} has no IMU: --local cloud is used", options_.client.id);
     options_.client.local = client::Local::cloud;
   }
   auto made = client::Client::create(
-      options_.client, [this](const client::PoseUpdate& update) { tell_ros(update); },
+      options_.client,
+      [this](const client::PoseUpdate& update) {
+        if (ros_) ros_->tell(update);
+      },
       [this](const client::Reply& reply) {
         log::debug("reply to {}: {} ({}) {}", reply.stamp_ns, reply.status, reply.reason, reply.text);
-        if (!reply.verified) return;
-        const std::scoped_lock lock(covariance_mutex_);
-        covariance_ = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(reply.covariance.data());
+        if (ros_) ros_->take(reply);
       });
   if (!made) return fail("{}", made.error());
   client_ = std::move(made.value());
   return {};
 }
 
+Status Daemon::subscribe_frames() {
+  const SensorTopics& topics = options_.topics;
+  if (topics.use_points)
+    return wire::subscribe_points_at(*sensors_, topics.points,
+                                     [this](const Result<wire::StampedCloud>& cloud) { take_points(cloud); });
+  if (auto ok = wire::subscribe_depth_at(*sensors_, topics.depth, options_.client.camera.depth_scale_m,
+                                         [this](const Result<DepthImage>& image) { take_depth(image); });
+      !ok)
+    return ok;
+  return wire::subscribe_camera_info_at(*sensors_, topics.camera_info, [this](const Result<Camera>& camera) {
+    if (camera) check_camera(*camera);
+  });
+}
+
 Status Daemon::subscribe() {
   auto dispatcher = wire::Dispatcher::create(*participant_);
   if (!dispatcher) return tl::unexpected(dispatcher.error());
   sensors_ = std::move(*dispatcher);
-  const std::string& id = options_.client.id;
-  const double scale = options_.client.camera.depth_scale_m;
-  if (auto ok = wire::subscribe_depth(*sensors_, id, scale,
-                                      [this](Result<DepthImage> image) { take_depth(std::move(image)); });
-      !ok)
-    return ok;
-  if (auto ok = wire::subscribe_camera_info(*sensors_, id,
-                                            [this](const Result<Camera>& camera) {
-                                              if (camera) check_camera(*camera);
-                                            });
-      !ok)
-    return ok;
+  const SensorTopics& topics = options_.topics;
+  if (auto ok = subscribe_frames(); !ok) return ok;
   if (options_.client.T_imu_sensor)
-    if (auto ok =
-            wire::subscribe_imu(*sensors_, id, [this](const Result<ImuSample>& sample) { take_imu(sample); });
+    if (auto ok = wire::subscribe_imu_at(*sensors_, topics.imu,
+                                         [this](const Result<ImuSample>& sample) { take_imu(sample); });
         !ok)
       return ok;
+  if (!topics.odometry.empty())
+    if (auto ok = wire::subscribe_odometry_at(
+            *sensors_, topics.odometry,
+            [this](const Result<wire::StampedOdometry>& odometry) { take_odometry(odometry); });
+        !ok)
+      return ok;
+  if (ros_) sensors_->every(1000ms, [this] { diagnose(); });
   sensors_->start();
   return {};
 }
@@ -142,7 +136,7 @@ void Daemon::complain(const std::string& what) {
   log::warning("{} ({} samples refused so far)", what, malformed_.load());
 }
 
-void Daemon::take_depth(Result<DepthImage> image) {
+void Daemon::take_depth(const Result<DepthImage>& image) {
   if (!image) return complain(image.error().message);
   const auto taken = client_->push_depth(image->units.data(), image->width, image->height, image->stamp_ns);
   if (!taken) complain(taken.error());
@@ -152,6 +146,32 @@ void Daemon::take_imu(const Result<ImuSample>& sample) {
   if (!sample) return complain(sample.error().message);
   const Eigen::Vector3d &w = sample->angular_velocity_rad_s, &f = sample->specific_force_m_s2;
   const auto taken = client_->push_imu(sample->stamp_ns, {w.x(), w.y(), w.z()}, {f.x(), f.y(), f.z()});
+  if (!taken) complain(taken.error());
+}
+
+void Daemon::take_points(const Result<wire::StampedCloud>& cloud) {
+  if (!cloud) return complain(cloud.error().message);
+  const auto& points = cloud->cloud_sensor.points;
+  if (points.empty()) return complain("a cloud without a finite point");
+  const auto taken = client_->push_points(points.front().data(), points.size(), cloud->stamp_ns);
+  if (!taken) complain(taken.error());
+}
+
+void Daemon::take_odometry(const Result<wire::StampedOdometry>& odometry) {
+  if (!odometry) return complain(odometry.error().message);
+  const std::string& expected = options_.ros.names.odom_frame;
+  if (odometry->frame_id != expected && !std::exchange(frame_differs_, true))
+    log::warning("odometry is in frame \"{}\", tf is told of \"{}\": set --odom-frame", odometry->frame_id,
+                 expected);
+  const Eigen::Vector3d t = odometry->T_odom_base.translation();
+  const Eigen::Quaterniond q(odometry->T_odom_base.linear());
+  std::optional<std::array<double, 36>> covariance;
+  if (!odometry->covariance.isZero()) {  // ROS: all zero says unknown
+    covariance.emplace();
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance->data()) = odometry->covariance;
+  }
+  const auto taken = client_->push_odometry(odometry->stamp_ns,
+                                            {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}}, covariance);
   if (!taken) complain(taken.error());
 }
 
@@ -168,31 +188,24 @@ void Daemon::check_camera(const Camera& camera) {
   camera_differs_ = differs;
 }
 
-void Daemon::tell_ros(const client::PoseUpdate& update) {
-  if (!ros_) return;
-  const Pose T_odom_sensor = to_domain(update.T_odom_sensor);
-  std::optional<Pose> T_map_odom;
-  Status told = ros_->publish_odometry(update.stamp_ns, T_odom_sensor);
-  if (update.T_map_sensor) {
-    const Pose T_map_sensor = to_domain(*update.T_map_sensor);
-    T_map_odom = T_map_sensor * T_odom_sensor.inverse();
-    const std::scoped_lock lock(covariance_mutex_);
-    if (told) told = ros_->publish_pose(update.stamp_ns, T_map_sensor, covariance_);
-  }
-  if (told) told = ros_->publish_tf(update.stamp_ns, T_map_odom, T_odom_sensor);
-  if (!told) log::warning("pose not published: {}", told.error().message);
+void Daemon::diagnose() {
+  const client::Stats stats = client_->stats();
+  const bool silent = std::exchange(frames_diagnosed_, stats.frames) == stats.frames;
+  ros_->diagnose(client_->newest(), stats, silent);
 }
 
 std::string Daemon::summary() const {
   const client::Stats s = client_->stats();
   const client::PoseUpdate newest = client_->newest();
   return fmt::format(
-      "{}: {}, server {}; {} frames ({} dropped, {} refused, {} non-informative; {:.1f} ms median, {:.1f} ms "
-      "p99), {} "
-      "requests ({} unsent, {} unanswered), {} replies ({} verified, {} refused)",
+      "{}: {}, server {}; {} frames ({} dropped, {} left out, {} refused, {} non-informative; {:.1f} ms "
+      "median, "
+      "{:.1f} ms p99, {:.1f} s of CPU), {} requests ({} unsent, {} unanswered), {} replies ({} verified, {} "
+      "refused)",
       options_.client.id, name_of(newest.state), newest.server_connected ? "there" : "not there", s.frames,
-      s.frames_dropped, s.frames_refused, s.frames_uninformative, s.frame_ms_median, s.frame_ms_p99, s.requests,
-      s.requests_unsent, s.requests_unanswered, s.replies, s.replies_verified, s.replies_refused);
+      s.frames_dropped, s.frames_skipped, s.frames_refused, s.frames_uninformative, s.frame_ms_median,
+      s.frame_ms_p99, s.cpu_s, s.requests, s.requests_unsent, s.requests_unanswered, s.replies,
+      s.replies_verified, s.replies_refused);
 }
 
 Status Daemon::stop() {

@@ -4,13 +4,29 @@
 #include "client/include/liloc/client.hpp"
 #include "common/base/log.hpp"
 #include "common/base/result.hpp"
+#include "common/wire/ros_publishers.hpp"
 
 namespace liloc {
+
+/// Topics are named as on the wire.
+struct SensorTopics {
+  std::string depth, camera_info, points, imu;
+  std::string odometry;     ///< empty: the client's own
+  bool use_points = false;  ///< in place of the depth image
+};
+
+struct RosOptions {
+  bool enabled = false;  ///< find the drivers of this host and tell ROS the pose
+  wire::RosNames names;
+  double tf_ahead_ms = 0;                              ///< map -> odom is stamped so far ahead
+  double tf_max_speed_m_s = 0, tf_max_turn_deg_s = 0;  ///< of map -> odom; 0: it steps
+};
 
 struct DaemonOptions {
   client::Options client;   ///< camera, IMU mounting and still time are set where device_file is empty
   std::string device_file;  ///< device.json; empty: the camera comes from its camera_info topic
-  bool ros = false;         ///< find the drivers of this host and tell ROS the pose
+  SensorTopics topics;
+  RosOptions ros;
   log::Level log_level = log::Level::info;
 };
 

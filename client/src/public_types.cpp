@@ -134,7 +134,8 @@ Stats to_public(const SessionStats& s) {
   return {s.frames,       s.frames_dropped,   s.frames_refused,   s.frames_uninformative,
           s.imu_refused,  s.requests,         s.requests_unsent,  s.requests_unanswered,
           s.replies,      s.replies_verified, s.replies_refused,  s.frame_ms_median,
-          s.frame_ms_p99, s.frames_skipped,   s.odometry_refused, s.cpu_s};
+          s.frame_ms_p99, s.frames_skipped,   s.odometry_refused, s.cpu_s,
+          s.problem};
 }
 
 }  // namespace liloc::client

@@ -30,6 +30,7 @@ struct SessionStats {
   std::uint64_t frames_skipped = 0;  ///< left out to stay within the budget
   std::uint64_t odometry_refused = 0;
   double cpu_s = 0;  ///< of the registration
+  std::string problem;
 };
 
 /// All calls are safe from any thread; none waits for the network.

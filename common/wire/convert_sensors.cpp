@@ -42,7 +42,8 @@ Status check_image(const sensor_msgs_msg_dds__Image_& m, std::uint64_t pixel_byt
 
 std::uint16_t units_of(float metres, double depth_scale_m) {
   const double units = static_cast<double>(metres) / depth_scale_m;
-  return std::isfinite(units) && units > 0 && units < 65535.5 ? static_cast<std::uint16_t>(std::lround(units)) : 0;
+  return std::isfinite(units) && units > 0 && units < 65535.5 ? static_cast<std::uint16_t>(std::lround(units))
+                                                              : 0;
 }
 
 struct Xyz {
@@ -147,6 +148,22 @@ Result<ImuSample> from_wire(const sensor_msgs_msg_dds__Imu_& m) {
   if (!(sample.specific_force_m_s2.cwiseAbs().maxCoeff() < 2000) || !sample.specific_force_m_s2.allFinite())
     return fail("linear_acceleration is ({}, {}, {}) m/s^2, must be within 2000", a.x, a.y, a.z);
   return sample;
+}
+
+Result<StampedOdometry> from_wire(const nav_msgs_msg_dds__Odometry_& m) {
+  const auto stamp_ns = stamp_of(m.header);
+  if (!stamp_ns) return tl::unexpected(stamp_ns.error());
+  const auto& p = m.pose.pose.position;
+  const auto& q = m.pose.pose.orientation;
+  const auto pose = valid_pose({p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, "pose.pose");
+  if (!pose) return tl::unexpected(pose.error());
+  const Matrix6d ros = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(m.pose.covariance);
+  if (!ros.allFinite() || ros.diagonal().minCoeff() < 0)
+    return fail("pose.covariance is not finite or has a negative variance");
+  StampedOdometry odometry{*stamp_ns, text_of(m.header.frame_id), *pose, {}};
+  odometry.covariance << ros.block<3, 3>(3, 3), ros.block<3, 3>(3, 0), ros.block<3, 3>(0, 3),
+      ros.block<3, 3>(0, 0);  // ROS has the position first
+  return odometry;
 }
 
 std_msgs_msg_dds__Header_ header_of(StampNs stamp_ns, const std::string& frame_id) {

@@ -13,6 +13,7 @@ namespace liloc::wire {
 [[nodiscard]] Result<Camera> from_wire(const sensor_msgs_msg_dds__CameraInfo_& message);
 [[nodiscard]] Result<StampedCloud> from_wire(const sensor_msgs_msg_dds__PointCloud2_& message);
 [[nodiscard]] Result<ImuSample> from_wire(const sensor_msgs_msg_dds__Imu_& message);
+[[nodiscard]] Result<StampedOdometry> from_wire(const nav_msgs_msg_dds__Odometry_& message);
 
 [[nodiscard]] std_msgs_msg_dds__Header_ header_of(StampNs stamp_ns, const std::string& frame_id);
 /// Lends the image's memory, as that of points lends the cloud's.

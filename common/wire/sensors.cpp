@@ -1,40 +1,85 @@
 #include "common/wire/sensors.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 #include "common/wire/convert_sensors.hpp"
 #include "common/wire/topics.hpp"
 #include "common/wire/typed.hpp"
 
 namespace liloc::wire {
 
-Status subscribe_depth(Dispatcher& dispatcher, const std::string& id, double depth_scale_m,
-                       std::function<void(Result<DepthImage>)> handler) {
+namespace {
+
+template <class T, class Out>
+Status subscribe_sensor(Dispatcher& dispatcher, const std::string& topic, int depth,
+                        std::function<void(Result<Out>)> handler) {
+  return subscribe<T>(
+      dispatcher, {}, topic, sensor_qos(depth),
+      [handler = std::move(handler)](const auto& message, const auto&) { handler(from_wire(message)); });
+}
+
+constexpr int kFrames = 5;
+constexpr int kSamples = 256;  // more than a second at 200 Hz: none must be lost to what a busy thread delays
+
+}  // namespace
+
+Result<std::string> dds_topic(const std::string& ros_name) {
+  const std::string name = ros_name.starts_with('/') ? ros_name.substr(1) : ros_name;
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '-'; };
+  if (name.empty() || name.size() > 200 || name.ends_with('/') || name.find("//") != std::string::npos ||
+      !std::ranges::all_of(name, allowed))
+    return fail("topic is \"{}\"; must be a ROS name of letters, digits, _ and /", ros_name);
+  return "rt/" + name;
+}
+
+Status subscribe_depth_at(Dispatcher& dispatcher, const std::string& topic, double depth_scale_m,
+                          std::function<void(Result<DepthImage>)> handler) {
   return subscribe<sensor_msgs_msg_dds__Image_>(
-      dispatcher, {}, depth_topic(id), sensor_qos(),
+      dispatcher, {}, topic, sensor_qos(kFrames),
       [depth_scale_m, handler = std::move(handler)](const auto& message, const auto&) {
         handler(from_wire(message, depth_scale_m));
       });
 }
 
+Status subscribe_camera_info_at(Dispatcher& dispatcher, const std::string& topic,
+                                std::function<void(Result<Camera>)> handler) {
+  return subscribe_sensor<sensor_msgs_msg_dds__CameraInfo_>(dispatcher, topic, kFrames, std::move(handler));
+}
+
+Status subscribe_points_at(Dispatcher& dispatcher, const std::string& topic,
+                           std::function<void(Result<StampedCloud>)> handler) {
+  return subscribe_sensor<sensor_msgs_msg_dds__PointCloud2_>(dispatcher, topic, kFrames, std::move(handler));
+}
+
+Status subscribe_imu_at(Dispatcher& dispatcher, const std::string& topic,
+                        std::function<void(Result<ImuSample>)> handler) {
+  return subscribe_sensor<sensor_msgs_msg_dds__Imu_>(dispatcher, topic, kSamples, std::move(handler));
+}
+
+Status subscribe_odometry_at(Dispatcher& dispatcher, const std::string& topic,
+                             std::function<void(Result<StampedOdometry>)> handler) {
+  return subscribe_sensor<nav_msgs_msg_dds__Odometry_>(dispatcher, topic, kSamples, std::move(handler));
+}
+
+Status subscribe_depth(Dispatcher& dispatcher, const std::string& id, double depth_scale_m,
+                       std::function<void(Result<DepthImage>)> handler) {
+  return subscribe_depth_at(dispatcher, depth_topic(id), depth_scale_m, std::move(handler));
+}
+
 Status subscribe_camera_info(Dispatcher& dispatcher, const std::string& id,
                              std::function<void(Result<Camera>)> handler) {
-  return subscribe<sensor_msgs_msg_dds__CameraInfo_>(
-      dispatcher, {}, camera_info_topic(id), sensor_qos(),
-      [handler = std::move(handler)](const auto& message, const auto&) { handler(from_wire(message)); });
+  return subscribe_camera_info_at(dispatcher, camera_info_topic(id), std::move(handler));
 }
 
 Status subscribe_points(Dispatcher& dispatcher, const std::string& id,
                         std::function<void(Result<StampedCloud>)> handler) {
-  return subscribe<sensor_msgs_msg_dds__PointCloud2_>(
-      dispatcher, {}, points_topic(id), sensor_qos(),
-      [handler = std::move(handler)](const auto& message, const auto&) { handler(from_wire(message)); });
+  return subscribe_points_at(dispatcher, points_topic(id), std::move(handler));
 }
 
 Status subscribe_imu(Dispatcher& dispatcher, const std::string& id,
                      std::function<void(Result<ImuSample>)> handler) {
-  constexpr int kDepth = 256;  // more than a second at 200 Hz: an IMU must not lose what a busy thread delays
-  return subscribe<sensor_msgs_msg_dds__Imu_>(
-      dispatcher, {}, imu_topic(id), sensor_qos(kDepth),
-      [handler = std::move(handler)](const auto& message, const auto&) { handler(from_wire(message)); });
+  return subscribe_imu_at(dispatcher, imu_topic(id), std::move(handler));
 }
 
 }  // namespace liloc::wire

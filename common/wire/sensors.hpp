@@ -17,6 +17,17 @@ struct StampedCloud {
   Cloud cloud_sensor;
 };
 
+/// nav_msgs/Odometry: where a base is in the frame `frame_id`.
+struct StampedOdometry {
+  StampNs stamp_ns = 0;
+  std::string frame_id;
+  Pose T_odom_base = Pose::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< [rad; m], axes of the odometry's frame
+};
+
+/// A topic as ROS 2 users name it ("/camera/depth/image_raw", with the slash or without) on the wire.
+[[nodiscard]] Result<std::string> dds_topic(const std::string& ros_name);
+
 /// 16UC1 comes through in the sensor's own units, 32FC1 (metres) is turned into units of `depth_scale_m`.
 [[nodiscard]] Status subscribe_depth(Dispatcher& dispatcher, const std::string& id, double depth_scale_m,
                                      std::function<void(Result<DepthImage>)> handler);
@@ -28,5 +39,17 @@ struct StampedCloud {
                                       std::function<void(Result<StampedCloud>)> handler);
 [[nodiscard]] Status subscribe_imu(Dispatcher& dispatcher, const std::string& id,
                                    std::function<void(Result<ImuSample>)> handler);
+
+/// The same from any topic, named as on the wire.
+[[nodiscard]] Status subscribe_depth_at(Dispatcher& dispatcher, const std::string& topic, double depth_scale_m,
+                                        std::function<void(Result<DepthImage>)> handler);
+[[nodiscard]] Status subscribe_camera_info_at(Dispatcher& dispatcher, const std::string& topic,
+                                              std::function<void(Result<Camera>)> handler);
+[[nodiscard]] Status subscribe_points_at(Dispatcher& dispatcher, const std::string& topic,
+                                         std::function<void(Result<StampedCloud>)> handler);
+[[nodiscard]] Status subscribe_imu_at(Dispatcher& dispatcher, const std::string& topic,
+                                      std::function<void(Result<ImuSample>)> handler);
+[[nodiscard]] Status subscribe_odometry_at(Dispatcher& dispatcher, const std::string& topic,
+                                           std::function<void(Result<StampedOdometry>)> handler);
 
 }  // namespace liloc::wire

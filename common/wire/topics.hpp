@@ -34,6 +34,7 @@ inline std::string odometry_topic(const std::string& id) {
   return "rt/" + id + "/odom";
 }
 inline constexpr const char* kTfTopic = "rt/tf";
+inline constexpr const char* kDiagnosticsTopic = "rt/diagnostics";
 inline std::string sensor_frame(const std::string& id) {
   return id + "/depth_optical_frame";
 }

@@ -43,6 +43,8 @@ LILOC_WIRE_TYPE(nav_msgs_msg_dds__Odometry_,
                 "typehash=RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0;");
 LILOC_WIRE_TYPE(tf2_msgs_msg_dds__TFMessage_,
                 "typehash=RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087;");
+LILOC_WIRE_TYPE(diagnostic_msgs_msg_dds__DiagnosticArray_,
+                "typehash=RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e;");
 #undef LILOC_WIRE_TYPE
 
 inline void set_type_hash(dds_qos_t* qos, const std::string& user_data) {

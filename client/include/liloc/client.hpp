@@ -118,7 +118,8 @@ struct Stats {
   double frame_ms_median = 0, frame_ms_p99 = 0;  ///< over the last 512 frames
   std::uint64_t frames_skipped = 0;              ///< left out because the computer, or its share, is too small
   std::uint64_t odometry_refused = 0;
-  double cpu_s = 0;  ///< CPU time of the registration so far
+  double cpu_s = 0;     ///< CPU time of the registration so far
+  std::string problem;  ///< what is wrong with the input now, for people; empty: nothing was noticed
 };
 
 /// Called for every processed frame on the registration thread: a slow callback delays the next frame.

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "common/wire/convert.hpp"
+#include "common/wire/convert_ros.hpp"
 #include "common/wire/convert_sensors.hpp"
 #include "common/wire/convert_spot.hpp"
 #include "common/wire/convert_status.hpp"
@@ -126,6 +127,15 @@ TEST(Golden, RosTf) {
   lend(m.transforms, transforms);
   EXPECT_EQ(cdr_of(m),
             "00010000010000000500000001000000040000006d617000050000006f646f6d(10)f03f(7)40(6)0840(30)f03f");
+}
+
+TEST(Golden, RosDiagnosticArray) {
+  const auto sample = diagnostics_message(
+      5'000'000'001, "robot1", {Diagnosis::Level::warn, "liloc-client: robot1", "coasting", {{"frames", "7"}}});
+  EXPECT_EQ(
+      cdr_of(sample->message),
+      "00010002050000000100000001(7)0100000001000000150000006c696c6f632d636c69656e743a20726f626f7431(4)090000"
+      "00636f617374696e67(4)07000000726f626f7431000001000000070000006672616d657300000200000037000000");
 }
 
 }  // namespace

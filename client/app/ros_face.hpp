@@ -1,0 +1,43 @@
+#pragma once
+#include <mutex>
+#include <optional>
+
+#include "client/app/map_odom_slew.hpp"
+#include "client/app/options.hpp"
+#include "common/wire/ros_publishers.hpp"
+
+namespace liloc {
+
+/// What the client tells ROS. Any thread.
+class RosFace {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<RosFace>> create(const wire::Participant& participant,
+                                                               const DaemonOptions& options);
+
+  /// A frame was processed: pose, odometry and transforms.
+  void tell(const client::PoseUpdate& update);
+  /// The covariance of a verified answer holds for the poses that follow it.
+  void take(const client::Reply& reply);
+  /// The state of the client as ROS's tools show it. `silent`: no frame came since the last call.
+  void diagnose(const client::PoseUpdate& newest, const client::Stats& stats, bool silent);
+
+ private:
+  RosFace(wire::RosPublisher publisher, const DaemonOptions& options);
+
+  const std::string id_;
+  const bool odometry_is_ours_;
+  const StampNs ahead_ns_;
+  const wire::RosPublisher publisher_;
+  std::mutex mutex_;  ///< all below
+  MapOdomSlew slew_;
+  Matrix6d covariance_ = Matrix6d::Identity();  ///< of the newest verified answer
+};
+
+/// What `diagnose` says: level, one line, and the figures.
+[[nodiscard]] wire::Diagnosis diagnosis_of(const std::string& id, const client::PoseUpdate& newest,
+                                           const client::Stats& stats, bool silent);
+
+/// "searching", "tracking", "coasting".
+[[nodiscard]] const char* name_of(client::State state);
+
+}  // namespace liloc

@@ -59,7 +59,8 @@ void declare_values(py::module_& module) {
       .def_readonly("frame_ms_p99", &Stats::frame_ms_p99)
       .def_readonly("frames_skipped", &Stats::frames_skipped)
       .def_readonly("odometry_refused", &Stats::odometry_refused)
-      .def_readonly("cpu_s", &Stats::cpu_s);
+      .def_readonly("cpu_s", &Stats::cpu_s)
+      .def_readonly("problem", &Stats::problem);
 }
 
 void declare_answers(py::module_& module) {

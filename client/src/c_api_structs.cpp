@@ -153,6 +153,7 @@ liloc_stats to_c(const Stats& stats) {
   s.frames_skipped = stats.frames_skipped;
   s.odometry_refused = stats.odometry_refused;
   s.cpu_s = stats.cpu_s;
+  stats.problem.copy(s.problem, sizeof(s.problem) - 1);  // the rest is 0
   return s;
 }
 

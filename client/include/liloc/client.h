@@ -138,7 +138,8 @@ typedef struct liloc_stats {
   double frame_ms_median, frame_ms_p99; /* over the last 512 frames */
   uint64_t frames_skipped;              /* left out because the computer, or its share, is too small */
   uint64_t odometry_refused;
-  double cpu_s; /* CPU time of the registration so far */
+  double cpu_s;      /* CPU time of the registration so far */
+  char problem[256]; /* what is wrong with the input now, for people; "": nothing was noticed */
 } liloc_stats;
 
 typedef struct liloc_client liloc_client;

@@ -124,6 +124,9 @@ class Stats:
     @property
     def cpu_s(self) -> float:
         """CPU time of the registration so far."""
+    @property
+    def problem(self) -> str:
+        """What is wrong with the input now, for people; empty: nothing was noticed."""
 
 class Client:
     """Runs from its making to stop(), the end of its `with` block, or the end of the program."""

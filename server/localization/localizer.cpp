@@ -43,7 +43,7 @@ struct Localizer::Impl {
   SpotReply answer(const SpotRequest& request) {
     const auto held = session(request.client_id);
     const std::scoped_lock in_turn(held->mutex);
-    const auto room = snapshot(request.stamp_ns);
+    const auto room = snapshot(request.match_stamp_ns());
     if (!room) return refusal(request, Reason::no_gpc, room.error().message);
     const auto spot = Spot::create(request, *room, options);
     if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);

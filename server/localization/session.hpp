@@ -20,7 +20,7 @@ struct VerifyOptions {
   double conclusive_agree = 0.45;     ///< ... share of device points on seen surfaces ...
   double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
   double locked_sd_rad = radians(2.0), locked_sd_m = 0.10;  ///< of map -> odom when it was just verified
-  double spot_sd_rad = radians(0.25), spot_sd_m = 0.012;    ///< of a well-observed spot, crowds and all
+  double spot_sd_rad = radians(0.10), spot_sd_m = 0.005;    ///< of a well-observed spot, crowds and all
   double step_sd_rad = radians(0.2),
          step_sd_m = 0.008;  ///< least growth between spots: calibration and clocks err too
   int research_every = 6;    ///< while tracking, every so many spots the whole room is searched

@@ -197,15 +197,18 @@ void Daemon::diagnose() {
 std::string Daemon::summary() const {
   const client::Stats s = client_->stats();
   const client::PoseUpdate newest = client_->newest();
-  return fmt::format(
-      "{}: {}, server {}; {} frames ({} dropped, {} left out, {} refused, {} non-informative; {:.1f} ms "
-      "median, "
-      "{:.1f} ms p99, {:.1f} s of CPU), {} requests ({} unsent, {} unanswered), {} replies ({} verified, {} "
-      "refused)",
-      options_.client.id, name_of(newest.state), newest.server_connected ? "there" : "not there", s.frames,
-      s.frames_dropped, s.frames_skipped, s.frames_refused, s.frames_uninformative, s.frame_ms_median,
-      s.frame_ms_p99, s.cpu_s, s.requests, s.requests_unsent, s.requests_unanswered, s.replies,
-      s.replies_verified, s.replies_refused);
+  const std::string frames = fmt::format(
+      "{} frames ({} dropped, {} left out, {} refused, {} non-informative; {:.1f} ms median, {:.1f} ms p99, "
+      "{:.1f} s of CPU)",
+      s.frames, s.frames_dropped, s.frames_skipped, s.frames_refused, s.frames_uninformative, s.frame_ms_median,
+      s.frame_ms_p99, s.cpu_s);
+  const std::string answers =
+      fmt::format("{} requests ({} unsent, {} unanswered), {} replies ({} verified, {} refused)", s.requests,
+                  s.requests_unsent, s.requests_unanswered, s.replies, s.replies_verified, s.replies_refused);
+  return fmt::format("{}: {}, server {}; {}, {}; clock {:+.1f} ms (round trip {:.1f} ms{}){}",
+                     options_.client.id, name_of(newest.state), newest.server_connected ? "there" : "not there",
+                     frames, answers, s.clock_offset_ms, s.clock_round_trip_ms,
+                     s.clock_good ? "" : ", not known well", s.problem.empty() ? "" : "; " + s.problem);
 }
 
 Status Daemon::stop() {

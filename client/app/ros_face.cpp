@@ -102,6 +102,10 @@ wire::Diagnosis diagnosis_of(const std::string& id, const client::PoseUpdate& ne
   add("requests", s.requests);
   add("requests unsent", s.requests_unsent);
   add("requests unanswered", s.requests_unanswered);
+  add("clock offset ms", s.clock_offset_ms);
+  add("clock round trip ms", s.clock_round_trip_ms);
+  add("clock known", s.clock_good);
+  add("clock jumps", s.clock_jumps);
   add("replies verified", s.replies_verified);
   add("replies refused", s.replies_refused);
   return d;

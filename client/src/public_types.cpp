@@ -131,11 +131,30 @@ Reply to_public(const SpotReply& reply) {
 }
 
 Stats to_public(const SessionStats& s) {
-  return {s.frames,       s.frames_dropped,   s.frames_refused,   s.frames_uninformative,
-          s.imu_refused,  s.requests,         s.requests_unsent,  s.requests_unanswered,
-          s.replies,      s.replies_verified, s.replies_refused,  s.frame_ms_median,
-          s.frame_ms_p99, s.frames_skipped,   s.odometry_refused, s.cpu_s,
-          s.problem};
+  Stats stats;
+  stats.frames = s.frames;
+  stats.frames_dropped = s.frames_dropped;
+  stats.frames_refused = s.frames_refused;
+  stats.frames_uninformative = s.frames_uninformative;
+  stats.imu_refused = s.imu_refused;
+  stats.requests = s.requests;
+  stats.requests_unsent = s.requests_unsent;
+  stats.requests_unanswered = s.requests_unanswered;
+  stats.replies = s.replies;
+  stats.replies_verified = s.replies_verified;
+  stats.replies_refused = s.replies_refused;
+  stats.frame_ms_median = s.frame_ms_median;
+  stats.frame_ms_p99 = s.frame_ms_p99;
+  stats.frames_skipped = s.frames_skipped;
+  stats.odometry_refused = s.odometry_refused;
+  stats.cpu_s = s.cpu_s;
+  stats.problem = s.problem;
+  stats.clock_jumps = s.clock_jumps;
+  if (!s.clock) return stats;
+  stats.clock_offset_ms = to_ms(s.clock->offset_ns);
+  stats.clock_round_trip_ms = to_ms(s.clock->round_trip_ns);
+  stats.clock_good = s.clock->good;
+  return stats;
 }
 
 }  // namespace liloc::client

@@ -11,6 +11,7 @@
 #include "client/src/trace.hpp"
 #include "common/base/bounded_queue.hpp"
 #include "common/base/log.hpp"
+#include "common/base/stamp_clock.hpp"
 
 namespace liloc {
 namespace {
@@ -66,7 +67,9 @@ struct Session::Impl {
   [[nodiscard]] Result<FrameResult> add(const SensorFrame& input);
   Tracking note(const FrameResult& frame);
   void hand_over_samples();
-  void send(const SpotRequest& request);
+  void stamp(SpotRequest& request);
+  void learn_clock(const SpotReply& reply);
+  void send(SpotRequest request);
   void trace_request(const SpotRequest& request);
 
   const SessionOptions options;
@@ -83,6 +86,8 @@ struct Session::Impl {
 
   mutable std::mutex state_mutex;  ///< all below; held for moments
   std::condition_variable odometry_came;
+  StampClock device_clock;
+  ClockEstimator clock;
   std::deque<ImuSample> imu;
   std::deque<OdometrySample> odometry;
   StampNs newest_odometry_ns = 0;
@@ -99,7 +104,7 @@ struct Session::Impl {
 
 void Session::Impl::start() {
   sending = std::jthread([this](const std::stop_token& stop) {
-    while (auto request = outbox.pop(stop)) send(*request);
+    while (auto request = outbox.pop(stop)) send(std::move(*request));
   });
   registration = std::jthread([this](const std::stop_token& stop) {
     while (auto frame = frames.pop(stop)) process(*frame);
@@ -219,7 +224,26 @@ void Session::Impl::process(const SensorFrame& input) {
   if (callbacks.on_frame) callbacks.on_frame(*frame, now);
 }
 
-void Session::Impl::send(const SpotRequest& request) {
+/// The time of sending, and the frame's time by the ceiling's clock where that is known well.
+void Session::Impl::stamp(SpotRequest& request) {
+  const std::scoped_lock lock(state_mutex);
+  request.sent_ns = device_clock.now(std::chrono::steady_clock::now()).value_or(0);
+  request.ceiling_stamp_ns = clock.ceiling_stamp(request.stamp_ns).value_or(0);
+}
+
+void Session::Impl::learn_clock(const SpotReply& reply) {
+  const std::scoped_lock lock(state_mutex);
+  const auto now = device_clock.now(std::chrono::steady_clock::now());
+  if (!now) return;
+  if (clock.add({reply.request_sent_ns, reply.server_received_ns, reply.server_sent_ns, *now})) {
+    ++stats.clock_jumps;
+    log::warning("{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
+                 options.engine.client_id);
+  }
+}
+
+void Session::Impl::send(SpotRequest request) {
+  stamp(request);
   const Status sent = callbacks.send ? callbacks.send(request) : Status(fail("no transport"));
   if (sent) return;
   log::debug("{}: request {} not sent: {}", options.engine.client_id, request.seq, sent.error().message);
@@ -247,6 +271,11 @@ Status Session::Impl::push(SensorFrame frame) {
   {
     const std::scoped_lock lock(state_mutex);
     if (stopped) return fail("{}: stopped: no more frames are taken", options.engine.client_id);
+    if (device_clock.add(frame.image.stamp_ns, std::chrono::steady_clock::now())) {
+      clock.reset();
+      ++stats.clock_jumps;
+      log::warning("{}: the device's clock was set to {} ns", options.engine.client_id, frame.image.stamp_ns);
+    }
   }
   if (!frames.push(std::move(frame))) return {};
   const std::scoped_lock lock(state_mutex);
@@ -292,6 +321,7 @@ Status Session::push_imu(const ImuSample& sample) {
 }
 
 void Session::add_reply(const SpotReply& reply) {
+  impl_->learn_clock(reply);
   const std::scoped_lock lock(impl_->engine_mutex);
   impl_->engine.add_reply(reply);
   const auto asked = impl_->asked.find(reply.seq);
@@ -316,6 +346,7 @@ Tracking Session::tracking() const {
 SessionStats Session::stats() const {
   const std::scoped_lock lock(impl_->state_mutex);
   SessionStats stats = impl_->stats;
+  stats.clock = impl_->clock.offset();
   const std::vector<double> latencies(impl_->latencies_ms.begin(), impl_->latencies_ms.end());
   stats.frame_ms_median = quantile(latencies, 0.5);
   stats.frame_ms_p99 = quantile(latencies, 0.99);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "client/src/clock_estimator.hpp"
 #include "client/src/engine.hpp"
 
 namespace liloc {
@@ -31,6 +32,8 @@ struct SessionStats {
   std::uint64_t odometry_refused = 0;
   double cpu_s = 0;  ///< of the registration
   std::string problem;
+  std::optional<ClockOffset> clock;  ///< of the device against the ceiling
+  std::uint64_t clock_jumps = 0;
 };
 
 /// All calls are safe from any thread; none waits for the network.

@@ -68,6 +68,7 @@ SpotReply refusal(const SpotRequest& request, Reason reason, std::string text) {
   reply.seq = request.seq;
   reply.stamp_ns = request.stamp_ns;
   reply.odom_segment = request.odom_segment;
+  reply.request_sent_ns = request.sent_ns;
   reply.status = SpotStatus::refused;
   reply.reason = reason;
   reply.text = std::move(text);

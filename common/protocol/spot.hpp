@@ -52,7 +52,12 @@ struct SpotRequest {
   /// Unit vector against gravity in sensor axes, where the device knows it, and its uncertainty.
   std::optional<Eigen::Vector3d> up_sensor;
   double up_sd_rad = 0.02;
-  bool cold = false;  ///< answer this request on its own: no prior, no history
+  bool cold = false;             ///< answer this request on its own: no prior, no history
+  StampNs ceiling_stamp_ns = 0;  ///< of the frame by the ceiling's clock; 0: not known, stamp_ns counts
+  StampNs sent_ns = 0;           ///< when it left, device clock; 0: not known
+
+  /// By which the global cloud is chosen.
+  [[nodiscard]] StampNs match_stamp_ns() const { return ceiling_stamp_ns != 0 ? ceiling_stamp_ns : stamp_ns; }
 };
 
 enum class SpotStatus : std::uint8_t { verified = 1, provisional = 2, refused = 3 };
@@ -103,6 +108,10 @@ struct SpotReply {
   std::uint32_t odom_segment = 0;
   double latency_ms = 0;  ///< from the request's arrival to this answer, server side
   std::string server_id;
+  StampNs request_sent_ns = 0;  ///< the request's, device clock
+  /// When it came and when this left, by the ceiling's clock: its newest stamps plus the time since; 0: not
+  /// known.
+  StampNs server_received_ns = 0, server_sent_ns = 0;
 
   [[nodiscard]] bool verified() const { return status == SpotStatus::verified; }
 };

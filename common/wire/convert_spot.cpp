@@ -116,6 +116,8 @@ Result<RequestSample> to_wire(const SpotRequest& request, std::uint64_t session)
   if (request.up_sensor) Eigen::Map<Eigen::Vector3d>(m.up_sensor) = *request.up_sensor;
   m.up_sd_rad = request.up_sd_rad;
   m.cold = request.cold;
+  m.ceiling_stamp_ns = request.ceiling_stamp_ns;
+  m.sent_ns = request.sent_ns;
   return sample;
 }
 
@@ -142,6 +144,9 @@ liloc_msg_SpotReply to_wire(const SpotReply& reply, std::uint64_t session) {
   m.T_map_odom = to_wire(reply.T_map_odom.value_or(Pose::Identity()));
   m.odom_segment = reply.odom_segment;
   m.latency_ms = reply.latency_ms;
+  m.request_sent_ns = reply.request_sent_ns;
+  m.server_received_ns = reply.server_received_ns;
+  m.server_sent_ns = reply.server_sent_ns;
   return m;
 }
 
@@ -160,8 +165,11 @@ Result<SpotRequest> from_wire(const liloc_msg_SpotRequest& message) {
   request.odom_sd_m = message.odom_sd_m;
   request.voxel_size_m = message.voxel_size_m;
   request.cold = message.cold;
+  request.ceiling_stamp_ns = message.ceiling_stamp_ns;
+  request.sent_ns = message.sent_ns;
   const Status numbers = all_of(
-      stamp_of(message.stamp_ns, "stamp_ns"), finite(message.odom_sd_rad, "odom_sd_rad", 0, 1e3),
+      stamp_of(message.stamp_ns, "stamp_ns"), stamp_of(message.ceiling_stamp_ns, "ceiling_stamp_ns"),
+      stamp_of(message.sent_ns, "sent_ns"), finite(message.odom_sd_rad, "odom_sd_rad", 0, 1e3),
       finite(message.odom_sd_m, "odom_sd_m", 0, 1e5), finite(message.voxel_size_m, "voxel_size_m", 0.005, 1.0));
   if (!numbers) return tl::unexpected(numbers.error());
   for (const auto read : {read_local_poses, read_cloud, read_view, read_up})
@@ -189,11 +197,16 @@ Result<SpotReply> from_wire(const liloc_msg_SpotReply& message) {
   reply.margin = message.margin;
   reply.odom_segment = message.odom_segment;
   reply.latency_ms = message.latency_ms;
+  reply.request_sent_ns = message.request_sent_ns;
+  reply.server_received_ns = message.server_received_ns;
+  reply.server_sent_ns = message.server_sent_ns;
   const Status numbers =
       all_of(stamp_of(message.stamp_ns, "stamp_ns"), stamp_of(message.gpc_stamp_ns, "gpc_stamp_ns"),
-             finite(message.fitness, "fitness", 0, 1), finite(message.inlier_rmse_m, "inlier_rmse_m", 0, 1e3),
-             finite(message.overlap, "overlap", 0, 1), finite(message.margin, "margin", -1e6, 1e6),
-             finite(message.latency_ms, "latency_ms", 0, 1e9));
+             stamp_of(message.request_sent_ns, "request_sent_ns"),
+             stamp_of(message.server_received_ns, "server_received_ns"),
+             stamp_of(message.server_sent_ns, "server_sent_ns"), finite(message.fitness, "fitness", 0, 1),
+             finite(message.inlier_rmse_m, "inlier_rmse_m", 0, 1e3), finite(message.overlap, "overlap", 0, 1),
+             finite(message.margin, "margin", -1e6, 1e6), finite(message.latency_ms, "latency_ms", 0, 1e9));
   if (!numbers) return tl::unexpected(numbers.error());
   const auto read = [](bool set, const liloc_msg_Transform& T, std::string_view what,
                        std::optional<Pose>& to) -> Status {

@@ -83,6 +83,7 @@ Status Server::open_streams(const ServerOptions& options) {
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
   const StampNs match_ns = cloud_options(options).match_ns;
   backend.ready = [this, match_ns](StampNs stamp_ns) { return ingest_->seen(stamp_ns - match_ns); };
+  backend.ceiling_now = [this](std::chrono::steady_clock::time_point at) { return ingest_->ceiling_now(at); };
   auto service = Service::create(*dispatcher_, options.service, std::move(backend));
   if (!service) return tl::unexpected(service.error());
   service_ = std::move(*service);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/log.hpp"
+#include "common/base/stamp_clock.hpp"
 #include "common/wire/sensors.hpp"
 #include "server/ingest/lidar_monitor.hpp"
 
@@ -30,6 +31,7 @@ struct Ingest::Lidar {
   wire::LidarState reported = wire::LidarState::waiting;
   bool camera_reported = false;
   StampNs newest_ns = 0;
+  StampClock clock;
 };
 
 Ingest::Ingest(FrameSink sink) : sink_(std::move(sink)) {}
@@ -74,6 +76,8 @@ void Ingest::take(std::size_t index, StampNs stamp_ns, const Status& taken) {
     const std::scoped_lock lock(mutex_);
     lidars_[index]->monitor.on_frame(Clock::now());
     lidars_[index]->newest_ns = stamp_ns;
+    if (lidars_[index]->clock.add(stamp_ns, Clock::now()))
+      log::warning("{}: its clock was set to {} ns", lidars_[index]->info.id, stamp_ns);
   }
   if (sink_.on_frame) sink_.on_frame();
 }
@@ -133,6 +137,19 @@ std::vector<wire::LidarHealth> Ingest::health() const {
   std::vector<wire::LidarHealth> health;
   for (const auto& lidar : lidars_) health.push_back(lidar->monitor.assess(now));
   return health;
+}
+
+StampNs Ingest::ceiling_now(Clock::time_point at) const {
+  std::vector<StampNs> clocks;
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& lidar : lidars_)
+      if (const auto now = lidar->clock.now(at)) clocks.push_back(*now);
+  }
+  if (clocks.empty()) return 0;
+  const auto middle = clocks.begin() + static_cast<std::ptrdiff_t>(clocks.size() / 2);
+  std::nth_element(clocks.begin(), middle, clocks.end());
+  return *middle;
 }
 
 bool Ingest::seen(StampNs stamp_ns) const {

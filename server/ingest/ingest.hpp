@@ -4,6 +4,7 @@
 //
 //   auto ingest = Ingest::create(dispatcher, site, {.add_depth = ..., .add_points = ...});
 //   dispatcher.start();
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -37,6 +38,9 @@ class Ingest {
 
   /// In the order of the site. Any thread.
   [[nodiscard]] std::vector<wire::LidarHealth> health() const;
+  /// What the ceiling's clock shows: the median of the LiDARs that are heard, each by its newest stamps and the
+  /// time since they came; 0 where none is. Any thread.
+  [[nodiscard]] StampNs ceiling_now(std::chrono::steady_clock::time_point at) const;
   /// Whether every LiDAR that is heard has shown the room as of `stamp_ns` or later. Any thread.
   [[nodiscard]] bool seen(StampNs stamp_ns) const;
 

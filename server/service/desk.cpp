@@ -69,7 +69,7 @@ void Desk::submit(wire::Arrival arrival) {
       refuse(*older, Reason::superseded, "a newer request took its place");
     }
   }
-  if (options_.hold.count() > 0 && backend_.ready && !backend_.ready(arrival.request.stamp_ns)) {
+  if (options_.hold.count() > 0 && backend_.ready && !backend_.ready(arrival.request.match_stamp_ns())) {
     const std::scoped_lock lock(mutex_);
     if (!stopping_ && held_.size() < options_.queue) {
       held_.push_back(std::move(arrival));
@@ -108,7 +108,8 @@ void Desk::release() {
   {
     const std::scoped_lock lock(mutex_);
     std::erase_if(held_, [&](wire::Arrival& held) {
-      if (!stopping_ && now - held.at < options_.hold && !backend_.ready(held.request.stamp_ns)) return false;
+      if (!stopping_ && now - held.at < options_.hold && !backend_.ready(held.request.match_stamp_ns()))
+        return false;
       due.push_back(std::move(held));
       return true;
     });
@@ -142,6 +143,11 @@ void Desk::refuse(const wire::Arrival& arrival, Reason reason, std::string text)
 void Desk::finish(const wire::Arrival& arrival, SpotReply reply) {
   reply.latency_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - arrival.at).count();
+  reply.request_sent_ns = arrival.request.sent_ns;
+  if (backend_.ceiling_now) {
+    reply.server_received_ns = backend_.ceiling_now(arrival.at);
+    reply.server_sent_ns = backend_.ceiling_now(std::chrono::steady_clock::now());
+  }
   ++answered_;
   if (reply.status == SpotStatus::verified) ++verified_;
   if (reply.status == SpotStatus::refused) ++refused_;

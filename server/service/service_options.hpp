@@ -23,6 +23,8 @@ struct ServiceOptions {
 struct ServiceBackend {
   std::function<SpotReply(const SpotRequest&)> locate = {};
   std::function<void(const std::string& client_id)> forget = {};  ///< the client left or began anew
+  /// What the ceiling's clock showed at a time, 0 where nobody knows; any thread. Empty: never known.
+  std::function<StampNs(std::chrono::steady_clock::time_point)> ceiling_now = {};
   std::function<bool(StampNs stamp_ns)> ready = {};  ///< is the ceiling seen as of this stamp? empty: always
 };
 

@@ -118,8 +118,13 @@ struct Stats {
   double frame_ms_median = 0, frame_ms_p99 = 0;  ///< over the last 512 frames
   std::uint64_t frames_skipped = 0;              ///< left out because the computer, or its share, is too small
   std::uint64_t odometry_refused = 0;
-  double cpu_s = 0;     ///< CPU time of the registration so far
-  std::string problem;  ///< what is wrong with the input now, for people; empty: nothing was noticed
+  double cpu_s = 0;  ///< CPU time of the registration so far
+  /// How far the device's clock runs ahead of the ceiling's, by the frames' stamps and the exchanges with the
+  /// server. `clock_good`: known well enough to be used where it matters.
+  double clock_offset_ms = 0, clock_round_trip_ms = 0;
+  bool clock_good = false;
+  std::uint64_t clock_jumps = 0;  ///< a clock was set; what was learned of it is forgotten
+  std::string problem;            ///< what is wrong with the input now, for people; empty: nothing was noticed
 };
 
 /// Called for every processed frame on the registration thread: a slow callback delays the next frame.

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "client/src/tests/walk.hpp"
+#include "common/geometry/depth.hpp"
 #include "common/wire/server_link.hpp"
 
 namespace liloc {
@@ -33,6 +34,8 @@ Options options() {
   return o;
 }
 
+const auto kBegin = std::chrono::steady_clock::now();
+
 /// A server that knows the answer: odometry lies at (1, 2, 3).
 class FakeServer {
  public:
@@ -49,6 +52,10 @@ class FakeServer {
       reply.T_map_odom = Pose(Eigen::Translation3d(1, 2, 3));
       reply.T_map_sensor = *reply.T_map_odom * arrival.request.T_odom_sensor;
       reply.covariance = 1e-4 * Matrix6d::Identity();
+      reply.server_received_ns = ceiling_ns(arrival.at);
+      reply.server_sent_ns = ceiling_ns(std::chrono::steady_clock::now());
+      last_ceiling_stamp_ns = arrival.request.ceiling_stamp_ns;
+      last_stamp_ns = arrival.request.stamp_ns;
       EXPECT_TRUE(link_->reply(arrival.from, reply));
       ++answered;
     };
@@ -57,7 +64,13 @@ class FakeServer {
   }
   ~FakeServer() { dispatcher_->stop(); }
 
+  /// The ceiling's clock: kStart at kBegin.
+  static StampNs ceiling_ns(std::chrono::steady_clock::time_point at) {
+    return kStart + std::chrono::nanoseconds(at - kBegin).count();
+  }
+
   std::atomic<int> answered = 0;
+  std::atomic<StampNs> last_stamp_ns = 0, last_ceiling_stamp_ns = 0;
 
  private:
   std::optional<wire::Participant> participant_;
@@ -138,6 +151,90 @@ TEST(Client, TracksCoastsAndComesBackWithTheServer) {
   EXPECT_EQ(static_cast<std::uint64_t>(poses), stats.frames);
   EXPECT_EQ(static_cast<std::uint64_t>(verified), stats.replies_verified);
   EXPECT_GT(stats.frame_ms_median, 0.0);
+}
+
+/// At the pace of life, by a clock that runs ahead of the ceiling's.
+void feed_ahead(Client& client, double ahead_ms, int frames) {
+  DepthImage image = frame_at(scene::furnished_room(1), 0);
+  for (int i = 0; i < frames; ++i) {
+    image.stamp_ns = FakeServer::ceiling_ns(std::chrono::steady_clock::now()) + from_ms(ahead_ms);
+    EXPECT_TRUE(client.push_depth(image.units.data(), image.width, image.height, image.stamp_ns));
+    std::this_thread::sleep_for(30ms);
+  }
+}
+
+TEST(Client, AClockThatRunsAheadIsFoundAndItsRequestsCarryTheCeilingsTime) {
+  FakeServer server;
+  Options o = options();
+  o.interval_ms = 100;
+  auto made = Client::create(o);
+  ASSERT_TRUE(made) << made.error();
+  feed_ahead(*made.value(), 70, 60);
+  const auto stats = made.value()->stats();
+  EXPECT_TRUE(stats.clock_good);
+  EXPECT_NEAR(stats.clock_offset_ms, 70, 10);
+  EXPECT_EQ(stats.clock_jumps, 0U);
+  ASSERT_NE(server.last_ceiling_stamp_ns, 0);
+  EXPECT_NEAR(to_ms(server.last_stamp_ns - server.last_ceiling_stamp_ns), 70, 10);
+
+  feed_ahead(*made.value(), 2070, 40);  // somebody set it
+  const auto after = made.value()->stats();
+  EXPECT_EQ(after.clock_jumps, 1U);
+  EXPECT_NEAR(after.clock_offset_ms, 2070, 10);
+}
+
+TEST(Client, ClocksInStepAreLeftAlone) {
+  FakeServer server;
+  Options o = options();
+  o.interval_ms = 100;
+  auto made = Client::create(o);
+  ASSERT_TRUE(made) << made.error();
+  feed_ahead(*made.value(), 2, 60);
+  EXPECT_TRUE(made.value()->stats().clock_good);
+  EXPECT_GT(server.answered, 3);
+  EXPECT_EQ(server.last_ceiling_stamp_ns, 0);
+}
+
+/// Wheels and clouds through the public API.
+TEST(Client, OdometryOfOthersAndCloudsGoThrough) {
+  FakeServer server;
+  Options o = options();
+  o.local = client::Local::external;
+  auto made = Client::create(o);
+  ASSERT_TRUE(made) << made.error();
+  Client& client = *made.value();
+  const auto room = scene::furnished_room(1);
+  int frame = 0;
+  for (double t = 0; t < 6 && client.newest().state != State::tracking; t += 0.02) {
+    const Eigen::Vector3d p = walk(t).translation();
+    const Eigen::Quaterniond q(walk(t).linear());
+    ASSERT_TRUE(
+        client.push_odometry(kStart + from_seconds(t), {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}));
+    if (time_of(frame) > t) continue;
+    const auto cloud = depth_to_cloud(frame_at(room, frame), scene::small_camera(), {});
+    ASSERT_TRUE(client.push_points(cloud->points.front().data(), cloud->size(), stamp_of(frame++)));
+    std::this_thread::sleep_for(20ms);
+  }
+  ASSERT_TRUE(client.stop());
+  const auto newest = client.newest();
+  EXPECT_EQ(newest.state, State::tracking);
+  ASSERT_TRUE(newest.T_map_sensor);
+  const double t = to_seconds(newest.stamp_ns - kStart);
+  EXPECT_NEAR(newest.T_map_sensor->translation_m[0], walk(t).translation().x() + 1, 0.02);
+  EXPECT_THAT(client.push_points(nullptr, 1, 1).error(), HasSubstr("NULL"));
+  EXPECT_THAT(client.push_odometry(1, {{0, 0, 0}, {0, 0, 0, 0}}).error(), HasSubstr("T_odom_base"));
+}
+
+TEST(Client, OdometryOfOthersNeedsItsMethod) {
+  auto made = Client::create(options());
+  ASSERT_TRUE(made) << made.error();
+  EXPECT_THAT(made.value()->push_odometry(1, {}).error(), HasSubstr("external"));
+  Options o = options();
+  o.T_base_sensor.emplace();
+  EXPECT_THAT(Client::create(o).error(), HasSubstr("options.T_base_sensor"));
+  o = options();
+  o.cpu_share = 0;
+  EXPECT_THAT(Client::create(o).error(), HasSubstr("options.cpu_share"));
 }
 
 TEST(Client, WrongInputIsRefusedAndCountsNothing) {

@@ -48,6 +48,8 @@ TEST(ConvertRequest, HostileFieldsAreNamed) {
       {"max_range_m", [](auto& m) { m.max_range_m = 0.1; }},
       {"up_sensor", [](auto& m) { m.up_sensor[0] = 3; }},
       {"up_sd_rad", [](auto& m) { m.up_sd_rad = -0.1; }},
+      {"ceiling_stamp_ns", [](auto& m) { m.ceiling_stamp_ns = -1; }},
+      {"sent_ns", [](auto& m) { m.sent_ns = -1; }},
   };
   const SpotRequest request = sample_request();
   ASSERT_TRUE(from_wire(to_wire(request, 1)->message));
@@ -69,6 +71,9 @@ TEST(ConvertReply, HostileFieldsAreNamed) {
       {"inlier_rmse_m", [](auto& m) { m.inlier_rmse_m = -1; }},
       {"margin", [](auto& m) { m.margin = kNan; }},
       {"latency_ms", [](auto& m) { m.latency_ms = -5; }},
+      {"request_sent_ns", [](auto& m) { m.request_sent_ns = -1; }},
+      {"server_received_ns", [](auto& m) { m.server_received_ns = -1; }},
+      {"server_sent_ns", [](auto& m) { m.server_sent_ns = -1; }},
       {"T_map_sensor",
        [](auto& m) {
          m.T_map_sensor.rotation_xyzw[3] = 0;

@@ -23,6 +23,8 @@ inline SpotRequest sample_request(const std::string& client_id = "robot1", std::
   r.view = {{320, 240, 228.5, 230.5, 159.5, 119.5, 0.001}, 0.25, 8.5};
   r.up_sensor = Eigen::Vector3d(0, -1, 0);
   r.cold = true;
+  r.ceiling_stamp_ns = r.stamp_ns - 0x10;
+  r.sent_ns = r.stamp_ns + 0x20;
   return r;
 }
 
@@ -40,6 +42,8 @@ inline SpotReply sample_reply(const SpotRequest& request = sample_request()) {
   r.T_map_odom = sample_pose(8);
   r.latency_ms = 12.5;
   r.server_id = "edge1";
+  r.server_received_ns = request.stamp_ns + 0x30;
+  r.server_sent_ns = request.stamp_ns + 0x40;
   return r;
 }
 

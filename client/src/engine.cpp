@@ -6,6 +6,7 @@
 #include "client/src/external_odometry.hpp"
 #include "client/src/image_thinning.hpp"
 #include "client/src/informativeness.hpp"
+#include "client/src/input_health.hpp"
 #include "client/src/map_link.hpp"
 #include "client/src/odometry.hpp"
 #include "client/src/points_view.hpp"
@@ -82,6 +83,7 @@ struct Engine::Impl {
   std::optional<ExternalOdometry> external;
   Informativeness informativeness;
   Odometry odometry;
+  InputHealth inputs;
   RequestSchedule schedule;
   MapLink link;
   StampNs last_ns = 0;
@@ -213,6 +215,8 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.converged = step.converged;
   frame.T_odom_sensor = step.T_odom_sensor;
   frame.odom_segment = step.segment;
+  frame.residual_m = step.residual_m;
+  inputs.note(spread.fault, step.residual_m);
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   frame.latency_ms = watch.elapsed_ms();
   ask_if_due(image, points, *placed);
@@ -256,6 +260,13 @@ std::vector<std::uint64_t> Engine::take_unanswered() {
 void Engine::add_reply(const SpotReply& reply) {
   impl_->schedule.answered(reply.seq);
   impl_->link.add(reply, impl_->segment);
+}
+
+std::string Engine::problem() const {
+  if (!impl_->started) return "";
+  if (std::string problem = impl_->inputs.problem(); !problem.empty()) return problem;
+  if (impl_->external && !impl_->external->placed()) return "no odometry for the newest frame";
+  return impl_->imu ? impl_->imu->problem(impl_->last_ns) : "";
 }
 
 std::optional<Pose> Engine::T_map_odom() const {

@@ -48,6 +48,7 @@ struct FrameResult {
   Pose T_odom_sensor = Pose::Identity();
   std::uint32_t odom_segment = 0;
   std::optional<Pose> T_map_sensor;  ///< where the device is, once an answer was verified
+  double residual_m = 0;             ///< of the match with the local map; 0: none
 };
 
 enum class Tracking { searching, tracking, coasting };  ///< coasting: located once, the server is silent
@@ -77,6 +78,8 @@ class Engine {
 
   [[nodiscard]] std::optional<Pose> T_map_odom() const;
   [[nodiscard]] Tracking tracking() const;
+  /// What is wrong with the input as of the last frame, for people; empty: nothing was noticed.
+  [[nodiscard]] std::string problem() const;
 
  private:
   struct Impl;

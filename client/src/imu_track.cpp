@@ -10,16 +10,66 @@ namespace {
 
 constexpr double kLargestGapS = 0.05;  // between neighbouring samples, or from a span's end to the next sample
 constexpr double kQuick = 0.1;         // weight of a new sample in the smoothed values that judge stillness
-constexpr int kMargin = 12;            // samples of context for the filters on either side of a span
+constexpr double kStandardGravity = 9.80665;
+constexpr int kUnitSamples = 20;  // judge the unit
+constexpr double kLargeRate = 3,
+                 kLargeForce = 15;  // a value that stays at exactly one this large is the range's end
+constexpr StampNs kSilent = from_ms(500), kClippedFor = from_ms(3000);
+constexpr double kDoubtTimeConstantS = 0.5, kDoubtSdRad = 0.3;  // of "up" in that time
+constexpr int kMargin = 12;  // samples of context for the filters on either side of a span
 
 }  // namespace
 
-Status ImuTrack::add(const ImuSample& sample) {
+/// Some drivers send g. Nothing that lies on a table or is carried feels 1 m/s^2.
+void ImuTrack::find_unit(const ImuSample& sample) {
+  if (raw_count_ >= kUnitSamples) return;
+  raw_force_sum_ += sample.specific_force_m_s2.norm();
+  if (++raw_count_ < kUnitSamples) return;
+  const double mean = raw_force_sum_ / raw_count_;
+  if (mean < 0.7 || mean > 1.4) return;
+  unit_ = kStandardGravity;
+  log::warning("IMU: a specific force of {:.2f} must be in g; taken times {}: have the driver send m/s^2", mean,
+               kStandardGravity);
+  for (Entry& entry : entries_) entry.raw.specific_force_m_s2 *= unit_;
+  force_now_ *= unit_;
+  force_sum_ *= unit_;
+}
+
+bool ImuTrack::clips(const ImuSample& sample) const {
+  if (entries_.empty()) return false;
+  const ImuSample& last = entries_.back().raw;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double w = sample.angular_velocity_rad_s[axis], f = sample.specific_force_m_s2[axis];
+    if (std::abs(w) > kLargeRate && w == last.angular_velocity_rad_s[axis]) return true;
+    if (std::abs(f) > kLargeForce && f == last.specific_force_m_s2[axis]) return true;
+  }
+  return false;
+}
+
+/// After values at the end of the range "up" is wrong as well, until the accelerometer has drawn it back.
+bool ImuTrack::doubtful(StampNs stamp_ns) const {
+  return clipped_ns_ != 0 && stamp_ns >= clipped_ns_ && stamp_ns - clipped_ns_ < kClippedFor;
+}
+
+std::string ImuTrack::problem(StampNs now_ns) const {
+  if (entries_.empty()) return "no IMU samples come";
+  if (now_ns - entries_.back().raw.stamp_ns > kSilent)
+    return fmt::format("no IMU samples for {:.1f} s", to_seconds(now_ns - entries_.back().raw.stamp_ns));
+  if (doubtful(now_ns)) return "the IMU is at the end of its range";
+  if (unit_ != 1) return "the IMU sends g in place of m/s^2 (corrected)";
+  return "";
+}
+
+Status ImuTrack::add(const ImuSample& given) {
+  ImuSample sample = given;
   if (!sample.angular_velocity_rad_s.allFinite() || !sample.specific_force_m_s2.allFinite())
     return fail("IMU sample at {} ns is not finite", sample.stamp_ns);
   if (!entries_.empty() && sample.stamp_ns <= entries_.back().raw.stamp_ns)
     return fail("IMU sample at {} ns is not newer than the last one ({} ns)", sample.stamp_ns,
                 entries_.back().raw.stamp_ns);
+  find_unit(sample);
+  sample.specific_force_m_s2 *= unit_;
+  if (clips(sample)) clipped_ns_ = sample.stamp_ns;
   if (entries_.empty()) {
     first_ns_ = sample.stamp_ns;
     gyro_now_ = sample.angular_velocity_rad_s;
@@ -73,8 +123,10 @@ void ImuTrack::end_calibration(const char* why) {
 void ImuTrack::follow(const ImuSample& sample, double dt_s) {
   const double gravity_off = std::abs(force_now_.norm() - gravity_m_s2_);
   up_ = so3_exp(-dt_s * (sample.angular_velocity_rad_s - bias_)) * up_;
-  if (gravity_off < options_.up_gate_m_s2)
-    up_ += dt_s / options_.up_time_constant_s * (sample.specific_force_m_s2.stableNormalized() - up_);
+  const bool doubt = doubtful(sample.stamp_ns);
+  const double time_constant_s = doubt ? kDoubtTimeConstantS : options_.up_time_constant_s;
+  if (gravity_off < (doubt ? 3 : 1) * options_.up_gate_m_s2)
+    up_ += std::min(1.0, dt_s / time_constant_s) * (sample.specific_force_m_s2.stableNormalized() - up_);
   up_.normalize();
 }
 
@@ -85,7 +137,7 @@ std::size_t ImuTrack::first_after(StampNs stamp_ns) const {
 }
 
 bool ImuTrack::covers(StampNs from_ns, StampNs to_ns) const {
-  if (entries_.size() < 2 || from_ns >= to_ns) return false;
+  if (entries_.size() < 2 || from_ns >= to_ns || doubtful(to_ns)) return false;
   const std::size_t begin = first_after(from_ns), end = first_after(to_ns);
   if (begin == 0 || end == 0) return false;
   if (to_seconds(to_ns - entries_[end - 1].raw.stamp_ns) > kLargestGapS) return false;
@@ -131,6 +183,7 @@ std::optional<Eigen::Vector3d> ImuTrack::up(StampNs stamp_ns) const {
 }
 
 double ImuTrack::up_sd_rad() const {
+  if (!entries_.empty() && doubtful(entries_.back().raw.stamp_ns)) return kDoubtSdRad;
   return calibrated() ? 0.01 : 0.05;
 }
 

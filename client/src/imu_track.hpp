@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "client/src/inertial.hpp"
@@ -48,12 +49,17 @@ class ImuTrack {
   [[nodiscard]] bool still() const { return calibrating_ && count_ > 20; }
   [[nodiscard]] bool calibrated() const { return calibrated_s_ >= 0.5; }
   [[nodiscard]] const Eigen::Vector3d& gyro_bias_rad_s() const { return bias_; }
+  /// What is wrong with the samples as of a frame, for people; empty: nothing was noticed.
+  [[nodiscard]] std::string problem(StampNs now_ns) const;
 
  private:
   struct Entry {
     ImuSample raw;
     Eigen::Vector3d up;
   };
+  void find_unit(const ImuSample& sample);
+  [[nodiscard]] bool clips(const ImuSample& sample) const;
+  [[nodiscard]] bool doubtful(StampNs stamp_ns) const;
   void calibrate(const ImuSample& sample);
   void end_calibration(const char* why);
   void follow(const ImuSample& sample, double dt_s);
@@ -64,6 +70,10 @@ class ImuTrack {
   std::deque<Entry> entries_;
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero(), up_ = Eigen::Vector3d::Zero();
   double gravity_m_s2_ = 9.81;
+  double unit_ = 1;  ///< that turns the accelerometer's numbers into m/s^2
+  double raw_force_sum_ = 0;
+  int raw_count_ = 0;
+  StampNs clipped_ns_ = 0;  ///< of the newest clipped sample
   bool calibrating_ = true;
   double calibrated_s_ = 0;
   StampNs first_ns_ = 0;

@@ -67,6 +67,7 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
                       OdometryStep& step) {
   step.T_odom_sensor = match.T_map_sensor;
   step.overlap = match.overlap;
+  step.residual_m = match.rmse_m;
   const Matrix6d covariance = match.information.inverse();
   step.sd_rad = std::sqrt(covariance.diagonal().head<3>().maxCoeff());
   step.sd_m = std::sqrt(covariance.diagonal().tail<3>().maxCoeff());

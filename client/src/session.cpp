@@ -172,7 +172,11 @@ void Session::Impl::trace_request(const SpotRequest& request) {
 
 Tracking Session::Impl::note(const FrameResult& frame) {
   const Tracking now = engine.tracking();
+  std::string problem = engine.problem();
   const std::scoped_lock lock(state_mutex);
+  if (!problem.empty() && problem.substr(0, 12) != stats.problem.substr(0, 12))  // figures in it change
+    log::warning("{}: {}", options.engine.client_id, problem);
+  stats.problem = std::move(problem);
   ++stats.frames;
   stats.frames_uninformative += frame.informative ? 0 : 1;
   latencies_ms.push_back(frame.latency_ms);

@@ -1,5 +1,7 @@
 // Runs the client's engine without a server over recordings and says how far its odometry drifts.
-//   liloc_odometry_bench [--local cloud|inertial|dead-reckoning] [--no-imu] [--every N] [--frames] REC...
+//   liloc_odometry_bench [--local cloud|inertial|dead-reckoning] [--no-imu] [--every N] [--frames]
+//                        [--focal-factor F] REC...
+// --focal-factor: wrong intrinsics, to see what they do.
 // Drift is the judge's figure: error of the relative pose from the first to the last frame, in per cent of the
 // path.
 #include <fmt/format.h>
@@ -7,6 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +26,7 @@ struct Options {
   LocalMethod local = LocalMethod::cloud;
   bool frames = false, use_imu = true;
   int every = 1;
+  double focal_factor = 1;
   std::vector<std::string> recordings;
 };
 
@@ -30,7 +36,24 @@ struct Run {
   int requests = 0;
   double worst_up_deg = -1;
   std::size_t lpc_bytes = 0;
+  double cpu_s = 0;                 ///< of the engine, reading of files left out
+  std::optional<double> package_j;  ///< of the whole processor in the time of the run, where the kernel tells
 };
+
+/// CPU time of this process so far; the engine has no other thread.
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Energy counter of the processor; empty without the right or the means to read it.
+std::optional<double> package_joules() {
+  std::ifstream file("/sys/class/powercap/intel-rapl:0/energy_uj");
+  double microjoules = 0;
+  if (!(file >> microjoules)) return std::nullopt;
+  return 1e-6 * microjoules;
+}
 
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return NAN;
@@ -47,17 +70,22 @@ Result<Run> run_device(const DeviceRecording& device, const Options& options) {
   eo.local = options.local;
   if (!device.imu.empty() && options.use_imu) eo.T_imu_sensor = device.info.T_imu_sensor;
   eo.still_seconds = device.info.still_seconds;
+  eo.camera.fx *= options.focal_factor;
+  eo.camera.fy *= options.focal_factor;
   Engine engine(eo);
   Run run;
+  const auto joules_before = package_joules();
   std::size_t next_imu = 0;
   for (std::size_t i = 0; i < device.depth.size(); i += static_cast<std::size_t>(options.every)) {
     const auto image = read_depth(device.depth[i], device.info.camera);
     if (!image) return tl::unexpected(image.error());
+    const double cpu_before = cpu_seconds();
     for (; options.use_imu && next_imu < device.imu.size() &&
            device.imu[next_imu].stamp_ns <= image->stamp_ns + from_ms(5);
          ++next_imu)
       if (const auto ok = engine.add_imu(device.imu[next_imu]); !ok) return tl::unexpected(ok.error());
     auto frame = engine.add_depth(*image);
+    run.cpu_s += cpu_seconds() - cpu_before;
     if (!frame) return tl::unexpected(frame.error());
     run.frames.push_back(std::move(*frame));
     run.truth.push_back((*truth)[i].T_map_sensor);
@@ -71,13 +99,16 @@ Result<Run> run_device(const DeviceRecording& device, const Options& options) {
       }
     }
   }
+  const auto joules_after = package_joules();
+  if (joules_before && joules_after && *joules_after > *joules_before)
+    run.package_j = *joules_after - *joules_before;
   return run;
 }
 
 void report(const std::string& name, const Run& run, const Options& options) {
   const auto& f = run.frames;
   double path = 0, good = 0;
-  std::vector<double> latency, step_mm;
+  std::vector<double> latency, step_mm, residual_mm;
   const auto error = [&](std::size_t i, std::size_t j) {
     return (run.truth[i].inverse() * run.truth[j]).inverse() *
            (f[i].T_odom_sensor.inverse() * f[j].T_odom_sensor);
@@ -85,6 +116,7 @@ void report(const std::string& name, const Run& run, const Options& options) {
   int icp = 0, ransac = 0, guess = 0, dull = 0;
   for (std::size_t i = 0; i < f.size(); ++i) {
     latency.push_back(f[i].latency_ms);
+    if (f[i].residual_m > 0) residual_mm.push_back(1e3 * f[i].residual_m);
     icp += f[i].method == "icp" || f[i].method == "inertial";
     ransac += f[i].method == "ransac";
     guess += f[i].method == "guess";
@@ -101,13 +133,18 @@ void report(const std::string& name, const Run& run, const Options& options) {
     good += degrees(rotation_angle_rad(E)) <= 3 && E.translation().norm() <= 0.1;
   }
   const Pose end = error(0, f.size() - 1);
+  const double seconds = std::max(to_seconds(f.back().stamp_ns - f.front().stamp_ns), 1e-3);
   fmt::print(
       "{:28} path {:5.2f} m  end {:5.1f} mm {:5.2f} %  {:5.2f} deg  pairs {:.3f} (median {:.1f} mm)  "
-      "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B\n",
+      "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B  "
+      "residual {:.1f} mm  {:.1f} ms of CPU per second{}\n",
       name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
       degrees(rotation_angle_rad(end)), good / static_cast<double>(f.size() - 1), quantile(step_mm, 0.5),
       quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess, dull, f.back().odom_segment + 1,
-      run.worst_up_deg, run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)));
+      run.worst_up_deg, run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)),
+      quantile(residual_mm, 0.5), 1e3 * run.cpu_s / seconds,
+      run.package_j ? fmt::format("  {:.2f} J per second, reading of files included", *run.package_j / seconds)
+                    : "");
 }
 
 int run_all(const Options& options) {
@@ -142,6 +179,8 @@ int main(int argc, char** argv) {
       liloc::log::set_sink([](liloc::log::Level, std::string_view line) { fmt::print(stderr, "{}\n", line); });
     } else if (arg == "--no-imu") {
       options.use_imu = false;
+    } else if (arg == "--focal-factor" && i + 1 < argc) {
+      options.focal_factor = std::atof(argv[++i]);
     } else if (arg == "--every" && i + 1 < argc) {
       options.every = std::max(1, std::atoi(argv[++i]));
     } else if (arg == "--local" && i + 1 < argc) {
@@ -156,9 +195,9 @@ int main(int argc, char** argv) {
     }
   }
   if (options.recordings.empty()) {
-    fmt::print(
-        stderr,
-        "usage: liloc_odometry_bench [--local METHOD] [--no-imu] [--every N] [--frames] [--verbose] REC...\n");
+    fmt::print(stderr,
+               "usage: liloc_odometry_bench [--local METHOD] [--no-imu] [--every N] [--frames] [--verbose] "
+               "[--focal-factor F] REC...\n");
     return 2;
   }
   return liloc::run_all(options);

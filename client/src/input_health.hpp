@@ -1,0 +1,22 @@
+#pragma once
+#include <deque>
+#include <string>
+
+#include "client/src/informativeness.hpp"
+
+namespace liloc {
+
+/// Notices depth that cannot be right, by what frames in a row have in common. Not thread-safe.
+class InputHealth {
+ public:
+  /// `residual_m`: of the frame's match with the local map; 0 where there was none.
+  void note(FrameFault fault, double residual_m);
+  /// For people; empty: nothing was noticed.
+  [[nodiscard]] std::string problem() const;
+
+ private:
+  int empty_ = 0;                   ///< frames in a row without enough returns
+  std::deque<double> residuals_m_;  ///< of the recent matches
+};
+
+}  // namespace liloc

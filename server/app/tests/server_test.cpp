@@ -42,12 +42,12 @@ SpotRequest request(StampNs stamp_ns, const Cloud& cloud) {
 
 TEST(Server, AnswersAClientAndTellsItsStatus) {
   ServerOptions options;
-  options.seat = {.domain = 141, .role = wire::Role::server};
+  options.seat = {.domain = 161, .role = wire::Role::server};
   options.service.server_id = options.localizer.server_id = "edge1";
   const auto server = Server::start(options, small_site());
   ASSERT_TRUE(server) << server.error().message;
 
-  const auto seat = wire::Participant::create({.domain = 141});
+  const auto seat = wire::Participant::create({.domain = 161});
   ASSERT_TRUE(seat);
   auto dispatcher = wire::Dispatcher::create(*seat).value();
   std::mutex mutex;
@@ -96,7 +96,7 @@ TEST(Server, AnswersAClientAndTellsItsStatus) {
 
 TEST(Server, AnInterfaceThatIsNotThereIsNamed) {
   ServerOptions options;
-  options.seat = {.domain = 142, .role = wire::Role::server, .interface = "nosuchcard0"};
+  options.seat = {.domain = 162, .role = wire::Role::server, .interface = "nosuchcard0"};
   const auto server = Server::start(options, small_site());
   ASSERT_FALSE(server);
   EXPECT_NE(server.error().message.find("nosuchcard0"), std::string::npos) << server.error().message;

@@ -31,7 +31,7 @@ struct Ingest::Lidar {
   wire::LidarState reported = wire::LidarState::waiting;
   bool camera_reported = false;
   StampNs newest_ns = 0;
-  StampClock clock;
+  StampClock clock{};
 };
 
 Ingest::Ingest(FrameSink sink) : sink_(std::move(sink)) {}
@@ -42,7 +42,7 @@ Result<std::unique_ptr<Ingest>> Ingest::create(wire::Dispatcher& dispatcher, con
   std::unique_ptr<Ingest> ingest(new Ingest(std::move(sink)));
   for (const auto& lidar : site.global_lidars)
     ingest->lidars_.push_back(
-        std::make_unique<Lidar>(Lidar{lidar, LidarMonitor(lidar.id, lidar.rate_hz, Clock::now()), {}}));
+        std::make_unique<Lidar>(Lidar{lidar, LidarMonitor(lidar.id, lidar.rate_hz, Clock::now())}));
   for (std::size_t i = 0; i < ingest->lidars_.size(); ++i)
     if (auto subscribed = ingest->subscribe(dispatcher, i); !subscribed)
       return tl::unexpected(subscribed.error());

@@ -70,7 +70,7 @@ Status stream_all(const Recording& recording, const std::vector<Event>& events, 
   FrameReader frames(recording, events);
   const auto start = Clock::now();
   for (std::size_t i = 0; i < events.size(); ++i) {
-    const auto due = start + std::chrono::nanoseconds(events[i].stamp_ns - events.front().stamp_ns);
+    const auto due = start + std::chrono::nanoseconds(events[i].due_ns - events.front().due_ns);
     if (auto status = sleep_until(due, fleet); !status) return status;
     if (auto status = send(streams, recording, events[i], frames, facts); !status) return status;
     if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(events.size()));
@@ -81,7 +81,7 @@ Status stream_all(const Recording& recording, const std::vector<Event>& events, 
 }  // namespace
 
 Result<RunFacts> run_live(const Recording& recording, const ReplayOptions& options, const Progress& progress) {
-  const std::vector<Event> events = timeline(recording);
+  const std::vector<Event> events = timeline(recording, from_ms(options.clock_ahead_ms));
   RunFacts facts;
   const auto domain = free_domain();
   if (!domain) return tl::unexpected(domain.error());

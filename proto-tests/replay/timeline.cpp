@@ -7,28 +7,30 @@ namespace liloc::replay {
 namespace {
 
 template <class Items>
-void add_events(std::vector<Event>& events, Event::Kind kind, std::size_t source, const Items& items) {
-  for (std::size_t i = 0; i < items.size(); ++i) events.push_back({items[i].stamp_ns, kind, source, i});
+void add_events(std::vector<Event>& events, Event::Kind kind, std::size_t source, const Items& items,
+                StampNs ahead_ns = 0) {
+  for (std::size_t i = 0; i < items.size(); ++i)
+    events.push_back({items[i].stamp_ns, kind, source, i, items[i].stamp_ns - ahead_ns});
 }
 
 }  // namespace
 
-std::vector<Event> timeline(const Recording& recording) {
+std::vector<Event> timeline(const Recording& recording, StampNs device_ahead_ns) {
   std::vector<Event> events;
   for (std::size_t i = 0; i < recording.lidars.size(); ++i)
     add_events(events, Event::Kind::ceiling, i, recording.lidars[i].depth);
   for (std::size_t i = 0; i < recording.devices.size(); ++i) {
-    add_events(events, Event::Kind::imu, i, recording.devices[i].imu);
-    add_events(events, Event::Kind::device, i, recording.devices[i].depth);
+    add_events(events, Event::Kind::imu, i, recording.devices[i].imu, device_ahead_ns);
+    add_events(events, Event::Kind::device, i, recording.devices[i].depth, device_ahead_ns);
   }
   std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
-    return std::tie(a.stamp_ns, a.kind, a.source, a.index) < std::tie(b.stamp_ns, b.kind, b.source, b.index);
+    return std::tie(a.due_ns, a.kind, a.source, a.index) < std::tie(b.due_ns, b.kind, b.source, b.index);
   });
   return events;
 }
 
 double recorded_seconds(const std::vector<Event>& events) {
-  return events.empty() ? 0 : to_seconds(events.back().stamp_ns - events.front().stamp_ns);
+  return events.empty() ? 0 : to_seconds(events.back().due_ns - events.front().due_ns);
 }
 
 FrameReader::FrameReader(const Recording& recording, const std::vector<Event>& events, std::size_t ahead)

@@ -1,5 +1,5 @@
 #pragma once
-// A recording as one stream of events, in the order of their stamps.
+// A recording as one stream of events, in the order in which they happen.
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -16,9 +16,11 @@ struct Event {
   Kind kind = Kind::ceiling;
   std::size_t source = 0;  ///< index of the LiDAR or device
   std::size_t index = 0;   ///< of its frame or sample
+  StampNs due_ns = 0;      ///< when it happens, by the ceiling's clock
 };
 
-[[nodiscard]] std::vector<Event> timeline(const Recording& recording);
+/// `device_ahead_ns`: how far the devices' clocks run ahead of the ceiling's; a recording holds stamps alone.
+[[nodiscard]] std::vector<Event> timeline(const Recording& recording, StampNs device_ahead_ns = 0);
 /// From the first event to the last.
 [[nodiscard]] double recorded_seconds(const std::vector<Event>& events);
 

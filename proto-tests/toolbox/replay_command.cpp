@@ -44,6 +44,12 @@ void add_replay(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--device", options->devices, "Replay this device alone; may be repeated");
   command->add_flag("--cold", options->cold, "Answer each request on its own: no prior, no history");
+  command
+      ->add_option(
+          "--clock-ahead-ms", options->clock_ahead_ms,
+          "The devices' clocks run so far ahead: what they sent is played that much earlier (not in lockstep)")
+      ->check(CLI::Range(-10'000.0, 10'000.0))
+      ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -46,11 +46,19 @@ int DepthPublisher::readers() const {
 }
 
 Result<PointsPublisher> PointsPublisher::create(const Participant& participant, const std::string& id) {
+  if (const auto valid = valid_id(id, "sensor id"); !valid) return tl::unexpected(valid.error());
+  return create_at(participant, points_topic(id), sensor_frame(id));
+}
+
+Result<PointsPublisher> PointsPublisher::create_at(const Participant& participant, const std::string& topic,
+                                                   const std::string& frame_id) {
   PointsPublisher publisher;
-  publisher.frame_id_ = sensor_frame(id);
-  Opener opener(participant, id);
-  opener.open<sensor_msgs_msg_dds__PointCloud2_>(publisher.writer_, points_topic(id), sensor_qos());
-  return opener.finish(std::move(publisher));
+  publisher.frame_id_ = frame_id;
+  auto writer = make_writer<sensor_msgs_msg_dds__PointCloud2_>(participant.handle(), participant.handle(),
+                                                               topic, sensor_qos());
+  if (!writer) return tl::unexpected(writer.error());
+  publisher.writer_ = std::move(*writer);
+  return publisher;
 }
 
 Status PointsPublisher::publish(StampNs stamp_ns, const Cloud& cloud_sensor) const {

@@ -32,6 +32,9 @@ class DepthPublisher {
 class PointsPublisher {
  public:
   [[nodiscard]] static Result<PointsPublisher> create(const Participant& participant, const std::string& id);
+  /// On any topic, named as on the wire.
+  [[nodiscard]] static Result<PointsPublisher> create_at(const Participant& participant,
+                                                         const std::string& topic, const std::string& frame_id);
   [[nodiscard]] Status publish(StampNs stamp_ns, const Cloud& cloud_sensor) const;
   [[nodiscard]] int readers() const;
 

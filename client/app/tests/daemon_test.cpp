@@ -1,0 +1,125 @@
+// The daemon between a robot's topics and a server, all in one process over DDS.
+#include "client/app/daemon.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "common/geometry/depth.hpp"
+#include "common/testing/box_room.hpp"
+#include "common/wire/sensor_publishers.hpp"
+#include "common/wire/server_link.hpp"
+
+namespace liloc {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+
+constexpr int kDomain = 144;  // of this test alone
+constexpr StampNs kStart = 1'700'000'000'000'000'000;
+
+/// Turns slowly in the middle of the room.
+Pose drive(double t) {
+  return scene::looking({3 + 0.1 * t, 2.5, 1.2}, 0.2 * t, 0.2);
+}
+
+/// Answers each request with odometry at (1, 2, 3).
+class FakeServer {
+ public:
+  FakeServer() {
+    seat_ = *wire::Participant::create({.domain = kDomain, .role = wire::Role::server});
+    dispatcher_ = std::move(*wire::Dispatcher::create(*seat_));
+    wire::ServerCallbacks callbacks;
+    callbacks.on_request = [this](const wire::Arrival& arrival) {
+      SpotReply reply = refusal(arrival.request, Reason::confirmed, "");
+      reply.status = SpotStatus::verified;
+      reply.T_map_odom = Pose(Eigen::Translation3d(1, 2, 3));
+      reply.covariance = 1e-4 * Matrix6d::Identity();
+      EXPECT_TRUE(link_->reply(arrival.from, reply));
+    };
+    link_ = std::move(*wire::ServerLink::create(*dispatcher_, {}, callbacks));
+    dispatcher_->start();
+  }
+  ~FakeServer() { dispatcher_->stop(); }
+
+ private:
+  std::optional<wire::Participant> seat_;
+  std::unique_ptr<wire::Dispatcher> dispatcher_;
+  std::unique_ptr<wire::ServerLink> link_;
+};
+
+DaemonOptions options(std::vector<const char*> extra) {
+  std::vector<const char*> arguments{"liloc-client", "--id",          "robot1", "--domain",
+                                     "144",          "--interval-ms", "200",    "--ros"};
+  arguments.insert(arguments.end(), extra.begin(), extra.end());
+  int exit_code = 0;
+  auto parsed = parse_arguments(static_cast<int>(arguments.size()), arguments.data(), exit_code);
+  EXPECT_TRUE(parsed) << parsed.error().message;
+  return *parsed;
+}
+
+TEST(Daemon, LocatesARobotByItsWheelsAndClouds) {
+  FakeServer server;
+  auto daemon = Daemon::start(options({"--points-topic", "cloud", "--points-view", "160", "120", "70", "55",
+                                       "--odometry-topic", "/wheels/odom", "--odom-frame", "wheels/odom"}),
+                              [] { return false; });
+  ASSERT_TRUE(daemon) << daemon.error().message;
+  const auto seat = *wire::Participant::create({.domain = kDomain, .role = wire::Role::source});
+  const auto wheels = *wire::RosPublisher::create(seat, "wheels", wire::RosNames::of("wheels"));
+  auto clouds = wire::PointsPublisher::create_at(seat, "rt/cloud", "sensor");
+  ASSERT_TRUE(clouds) << clouds.error().message;
+  const auto room = scene::furnished_room(1);
+  for (int i = 0; i < 200 && (*daemon)->summary().find("tracking") == std::string::npos; ++i) {
+    const double t = 0.05 * i;
+    const StampNs stamp = kStart + from_seconds(t);
+    ASSERT_TRUE(wheels.publish_odometry(stamp, drive(t)));
+    const auto cloud =
+        depth_to_cloud(scene::render(room, drive(t), scene::small_camera(), stamp), scene::small_camera());
+    ASSERT_TRUE(clouds->publish(stamp, *cloud));
+    std::this_thread::sleep_for(30ms);
+  }
+  EXPECT_THAT((*daemon)->summary(), HasSubstr("robot1: tracking, server there"));
+  EXPECT_TRUE((*daemon)->stop());
+}
+
+TEST(Daemon, TellsRosTheOdometryOfADepthCamera) {
+  FakeServer server;
+  const auto seat = *wire::Participant::create({.domain = kDomain, .role = wire::Role::source});
+  const Camera camera = scene::small_camera();
+  const auto depth = *wire::DepthPublisher::create(seat, "robot1", camera);
+  auto listening = *wire::Dispatcher::create(seat);
+  std::atomic<int> heard = 0;
+  std::atomic<double> moved_m = 0;
+  ASSERT_TRUE(wire::subscribe_odometry_at(*listening, "rt/robot1/odom",
+                                          [&](const Result<wire::StampedOdometry>& odometry) {
+                                            ASSERT_TRUE(odometry) << odometry.error().message;
+                                            EXPECT_EQ(odometry->frame_id, "robot1/odom");
+                                            moved_m = odometry->T_odom_base.translation().norm();
+                                            ++heard;
+                                          }));
+  listening->start();
+  const auto room = scene::furnished_room(1);
+  std::atomic<bool> done = false;
+  std::jthread camera_driver([&] {  // its camera_info gives the daemon the intrinsics
+    for (int i = 0; !done && i < 400; ++i) {
+      const double t = 0.05 * i;
+      EXPECT_TRUE(depth.publish(scene::render(room, drive(t), camera, kStart + from_seconds(t))));
+      std::this_thread::sleep_for(30ms);
+    }
+  });
+  auto daemon = Daemon::start(options({}), [] { return false; });
+  ASSERT_TRUE(daemon) << daemon.error().message;
+  for (int i = 0; i < 500 && heard < 20; ++i) std::this_thread::sleep_for(20ms);
+  done = true;
+  camera_driver.join();
+  EXPECT_GE(heard, 20);
+  EXPECT_GT(moved_m, 0.05);
+  EXPECT_TRUE((*daemon)->stop());
+  listening->stop();
+}
+
+}  // namespace
+}  // namespace liloc

@@ -5,7 +5,7 @@
 namespace liloc {
 namespace {
 
-constexpr double kConflictWeight = 8.0;
+constexpr double kConflictWeight = 16.0;
 
 /// The word of all ceiling views on one device point: one that measured a surface there outweighs one that,
 /// past an edge, looked by.

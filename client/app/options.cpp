@@ -114,6 +114,7 @@ void declare(CLI::App& app, DaemonOptions& options, Raw& raw) {
                    "Of one core for the registration; frames are left out to keep it")
       ->check(CLI::Range(0.02, 1.0))
       ->capture_default_str();
+  method->add_flag("!--no-submap", c.submap, "Send the frame alone, without what stands around");
   method->add_flag("--cold", c.cold, "Each request is answered on its own");
   method->add_option("--seed", c.seed, "Of all randomness")->capture_default_str();
 

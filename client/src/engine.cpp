@@ -11,6 +11,7 @@
 #include "client/src/odometry.hpp"
 #include "client/src/points_view.hpp"
 #include "client/src/request_schedule.hpp"
+#include "client/src/submap.hpp"
 #include "common/base/log.hpp"
 #include "common/codec/codec.hpp"
 #include "common/geometry/depth.hpp"
@@ -22,6 +23,9 @@ namespace {
 constexpr int kSilentIntervals = 3;
 constexpr std::size_t kFewestSurfels = 60;    // a frame with fewer cannot be matched
 constexpr std::size_t kMostLocalPoses = 250;  // a message holds 256; older ones of a long silence are left out
+constexpr StampNs kSubmapAge =
+    from_ms(10'000);                         // since a surface was seen; odometry drifts by millimetres in that
+constexpr std::size_t kSubmapPoints = 2000;  // about 5 kB
 constexpr double kOdomSdM = 0.01, kOdomSdRad = 0.005, kOdomSdShare = 0.01;  // floor, and share of path and turn
 
 OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
@@ -74,6 +78,7 @@ struct Engine::Impl {
   [[nodiscard]] Result<Placed> place(const DepthImage& image, const Cloud* points, const FrameSpread& spread);
   void note_motion(const OdometryStep& step);
   void ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed);
+  void add_submap(SpotRequest& r) const;
   [[nodiscard]] Result<SpotRequest> make_request(const DepthImage& image, const Cloud* points,
                                                  const OdometryStep& step);
 
@@ -122,6 +127,13 @@ void Engine::Impl::note_motion(const OdometryStep& step) {
   T_odom_last = step.T_odom_sensor;
 }
 
+void Engine::Impl::add_submap(SpotRequest& r) const {
+  const Cloud standing = odometry.map().standing(r.stamp_ns - kSubmapAge, r.stamp_ns);
+  const Cloud extra = outside_view(standing, r.T_odom_sensor, r.view, kSubmapPoints);
+  if (extra.size() < kFewestSurfels) return;
+  if (auto encoded = encode(extra)) r.extra = std::move(*encoded);
+}
+
 Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cloud* points,
                                                const OdometryStep& step) {
   auto cloud =
@@ -147,6 +159,7 @@ Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cl
     r.up_sd_rad = imu->up_sd_rad();
   }
   r.cold = options.cold;
+  if (options.submap && !options.cold && !external) add_submap(r);
   path_m = turned_rad = 0;
   if (external) external->anchor();
   return r;

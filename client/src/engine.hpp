@@ -28,6 +28,7 @@ struct EngineOptions {
   double still_seconds = 0;          ///< the device stands still for so long at the start
   bool cold = false;                 ///< each request is to be answered on its own
   std::uint64_t seed = 1;
+  bool submap = true;                     ///< send what stands around as well, unless `cold`
   Pose T_base_sensor = Pose::Identity();  ///< with external odometry: the sensor on what the odometry moves
 };
 

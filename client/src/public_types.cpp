@@ -98,6 +98,7 @@ Result<SessionOptions> to_session(const Options& o) {
   s.cpu_share = o.cpu_share;
   s.engine.still_seconds = o.still_seconds;
   s.engine.cold = o.cold;
+  s.engine.submap = o.submap;
   s.engine.seed = o.seed;
   s.queue_frames = o.queue_frames;
   s.trace_folder = o.trace_folder;

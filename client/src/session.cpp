@@ -166,6 +166,7 @@ void Session::Impl::trace_request(const SpotRequest& request) {
   if (trace) trace->on_request(request);
   SpotRequest light = request;
   light.lpc.bytes.clear();
+  light.extra.bytes.clear();
   light.local_poses.clear();
   asked[request.seq] = std::move(light);
 }

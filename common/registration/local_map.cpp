@@ -230,4 +230,14 @@ Cloud LocalMap::cloud() const {
   return cloud;
 }
 
+Cloud LocalMap::standing(StampNs since_ns, StampNs now_ns) const {
+  Cloud cloud;
+  for (const Cell& cell : cells_) {
+    if (cell.surfel.count == 0 || cell.last_ns < since_ns || trust(cell, now_ns) < 1) continue;
+    cloud.points.push_back(cell.surfel.mean);
+    cloud.normals.push_back(cell.surfel.normal);
+  }
+  return cloud;
+}
+
 }  // namespace liloc

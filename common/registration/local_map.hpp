@@ -55,6 +55,8 @@ class LocalMap {
 
   /// Means and normals, for feature matching.
   [[nodiscard]] Cloud cloud() const;
+  /// The same of those that have stood the test of time and were seen at `since_ns` or later.
+  [[nodiscard]] Cloud standing(StampNs since_ns, StampNs now_ns) const;
   [[nodiscard]] std::size_t size() const { return alive_; }
   [[nodiscard]] double cell_m() const { return options_.cell_m; }
   void clear();

@@ -6,7 +6,7 @@
 namespace liloc::wire {
 namespace {
 
-constexpr std::size_t kMaxLocalPoses = 256, kMaxLpcBytes = 262'144;
+constexpr std::size_t kMaxLocalPoses = 256, kMaxLpcBytes = 262'144, kMaxExtraBytes = 65'536;
 
 liloc_msg_Transform to_wire(const Pose& T) {
   const Eigen::Quaterniond q(T.linear());
@@ -53,6 +53,9 @@ Status read_cloud(const liloc_msg_SpotRequest& message, SpotRequest& request) {
   if (message.lpc._length == 0) return fail("lpc is empty; send a frame's cloud");
   request.lpc.codec = static_cast<CloudCodec>(message.codec);
   request.lpc.bytes.assign(message.lpc._buffer, message.lpc._buffer + message.lpc._length);
+  request.extra.codec = request.lpc.codec;
+  if (message.extra._length > 0)
+    request.extra.bytes.assign(message.extra._buffer, message.extra._buffer + message.extra._length);
   return {};
 }
 
@@ -85,6 +88,11 @@ Result<RequestSample> to_wire(const SpotRequest& request, std::uint64_t session)
   if (request.lpc.bytes.size() > kMaxLpcBytes)
     return fail("request's LPC has {} bytes, at most {} travel; use a larger voxel", request.lpc.bytes.size(),
                 kMaxLpcBytes);
+  if (request.extra.bytes.size() > kMaxExtraBytes)
+    return fail("request's extra cloud has {} bytes, at most {} travel; thin it", request.extra.bytes.size(),
+                kMaxExtraBytes);
+  if (!request.extra.bytes.empty() && request.extra.codec != request.lpc.codec)
+    return fail("request's extra cloud has another codec than its LPC; encode both alike");
   RequestSample sample;
   auto& m = sample.message;
   m.protocol_version = kProtocolVersion;
@@ -118,6 +126,7 @@ Result<RequestSample> to_wire(const SpotRequest& request, std::uint64_t session)
   m.cold = request.cold;
   m.ceiling_stamp_ns = request.ceiling_stamp_ns;
   m.sent_ns = request.sent_ns;
+  lend(m.extra, request.extra.bytes);
   return sample;
 }
 

@@ -27,6 +27,7 @@ FleetCommand fleet_command(const Recording& recording, const ReplayOptions& opti
     client.arguments = {"--voxel", voxel,         "--interval-ms", fmt::format("{}", options.interval_ms),
                         "--local", options.local, "--seed",        seed};
     if (options.cold) client.arguments.emplace_back("--cold");
+    if (!options.submap) client.arguments.emplace_back("--no-submap");
     fleet.clients.push_back(std::move(client));
   }
   return fleet;

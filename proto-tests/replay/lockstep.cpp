@@ -34,6 +34,7 @@ EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions&
   if (!device.imu.empty()) engine.T_imu_sensor = device.info.T_imu_sensor;
   engine.still_seconds = device.info.still_seconds;
   engine.cold = options.cold;
+  engine.submap = options.submap;
   engine.seed = options.seed;
   return engine;
 }

@@ -19,6 +19,7 @@ struct ReplayOptions {
   double sampling = 0.5;
   std::vector<std::string> devices;  ///< ids to replay; empty: all of the recording
   bool cold = false;
+  bool submap = true;              ///< requests carry what the device saw shortly before
   double clock_ahead_ms = 0;       ///< of the devices: sent so much earlier than stamped; not in lockstep
   int threads = 1;                 ///< of the server, per request
   std::filesystem::path programs;  ///< folder of liloc-server and liloc-client; used without lockstep

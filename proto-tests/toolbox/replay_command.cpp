@@ -50,6 +50,8 @@ void add_replay(CLI::App& app, int& exit_code) {
           "The devices' clocks run so far ahead: what they sent is played that much earlier (not in lockstep)")
       ->check(CLI::Range(-10'000.0, 10'000.0))
       ->capture_default_str();
+  command->add_flag("!--no-submap", options->submap,
+                    "Requests carry a frame alone, without what was seen before");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

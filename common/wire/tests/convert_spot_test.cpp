@@ -60,6 +60,17 @@ TEST(ConvertRequest, HostileFieldsAreNamed) {
   }
 }
 
+TEST(ConvertRequest, TheExtraCloudIsCarriedAndBounded) {
+  SpotRequest request = sample_request();
+  EXPECT_EQ(from_wire(to_wire(request, 1)->message)->extra.bytes, request.extra.bytes);
+  request.extra.codec = CloudCodec::octree;
+  EXPECT_FALSE(to_wire(request, 1));
+  request.extra = {CloudCodec::draco, std::vector<std::uint8_t>(70'000, 1)};
+  EXPECT_FALSE(to_wire(request, 1));
+  request.extra.bytes.clear();
+  EXPECT_TRUE(from_wire(to_wire(request, 1)->message)->extra.bytes.empty());
+}
+
 TEST(ConvertReply, HostileFieldsAreNamed) {
   const std::pair<const char*, std::function<void(liloc_msg_SpotReply&)>> cases[] = {
       {"status", [](auto& m) { m.status = 0; }},

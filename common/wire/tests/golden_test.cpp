@@ -50,12 +50,12 @@ std::string cdr_of(const T& message) {
 TEST(Golden, SpotRequest) {
   const SpotRequest request = sample_request();
   EXPECT_EQ(cdr_of(to_wire(request, 0x1122334455667788).value().message),
-            "000100000100000007000000726f626f74310000887766554433221107(7)15cd853dfe9c971703(13)f03f(7)40(6)f"
+            "000100010100000007000000726f626f74310000887766554433221107(7)15cd853dfe9c971703(13)f03f(7)40(6)f"
             "0bf(6)e03f(6)e0bf(6)e03f(6)e03f7b14ae47e17a843f7b14ae47e17a943f02(7)13cd853dfe9c9717(6)d03f(6)e0"
             "3f(6)d0bf(6)e03f(6)e0bf(6)e03f(6)e03f(8)15cd853dfe9c9717(6)e03f(6)f03f(6)e0bf(6)e03f(6)e0bf(6)e0"
             "3f(6)e03f010100000500000001020304050000009a9999999999a93f4001f0(10)906c40(5)d06c40(5)f06340(5)e0"
             "5d40fca9f1d24d62503f(6)d03f(6)214001(21)f0bf(8)7b14ae47e17a943f01(7)05cd853dfe9c971735cd853dfe9c"
-            "9717");
+            "97170300000009080700");
 }
 
 TEST(Golden, SpotReply) {

@@ -25,6 +25,7 @@ inline SpotRequest sample_request(const std::string& client_id = "robot1", std::
   r.cold = true;
   r.ceiling_stamp_ns = r.stamp_ns - 0x10;
   r.sent_ns = r.stamp_ns + 0x20;
+  r.extra = {CloudCodec::draco, {9, 8, 7}};
   return r;
 }
 

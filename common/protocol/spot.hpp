@@ -56,7 +56,8 @@ struct SpotRequest {
   StampNs ceiling_stamp_ns = 0;  ///< of the frame by the ceiling's clock; 0: not known, stamp_ns counts
   StampNs sent_ns = 0;           ///< when it left, device clock; 0: not known
   /// Surfaces that the device saw shortly before, outside the frame's view, by its odometry in the sensor frame
-  /// at `stamp_ns`; about one point per two voxels. They say nothing of what the frame looks through. May be empty.
+  /// at `stamp_ns`; about one point per two voxels. They say nothing of what the frame looks through. May be
+  /// empty.
   EncodedCloud extra;
 
   /// By which the global cloud is chosen.

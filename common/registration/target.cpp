@@ -62,13 +62,15 @@ Target make_target(Cloud cloud_map, std::vector<SightView> views, double voxel_s
   return {std::move(surfaces), std::move(views)};
 }
 
-Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options) {
+Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options,
+                 const Cloud& extra_sensor) {
   Query query;
-  query.cloud = with_normals(voxel_downsample(cloud_sensor, options.voxel_size_m), Eigen::Vector3f::Zero(),
-                             {2.5 * options.voxel_size_m, 5});
+  Cloud seen = voxel_downsample(cloud_sensor, options.voxel_size_m);
+  if (camera != nullptr) query.view = SightView::from_cloud(seen, *camera, options.voxel_size_m, 80);
+  seen.points.insert(seen.points.end(), extra_sensor.points.begin(), extra_sensor.points.end());
+  query.cloud = with_normals(std::move(seen), Eigen::Vector3f::Zero(), {2.5 * options.voxel_size_m, 5});
   query.medium = voxel_downsample(query.cloud, 2 * options.voxel_size_m);
   query.sparse = spread_points(query.cloud, options.sparse_points, options.voxel_size_m, options.seed);
-  if (camera != nullptr) query.view = SightView::from_cloud(query.cloud, *camera, options.voxel_size_m, 80);
   return query;
 }
 

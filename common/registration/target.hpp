@@ -60,7 +60,9 @@ struct QueryOptions {
   std::size_t sparse_points = 300;
   std::uint64_t seed = 1;
 };
-/// `camera` null: no view. Drops points that hang in the air.
-[[nodiscard]] Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options);
+/// `camera` null: no view. `extra_sensor`: surfaces around the frame that the device saw shortly before; they
+/// match, but say nothing of what the frame looks through. Drops points that hang in the air.
+[[nodiscard]] Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options,
+                               const Cloud& extra_sensor = {});
 
 }  // namespace liloc

@@ -41,7 +41,10 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
   auto spot = std::make_shared<Spot>();
   spot->snapshot_ = std::move(snapshot);
   spot->T_odom_sensor_ = request.T_odom_sensor;
-  spot->query_ = make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed});
+  Cloud extra;
+  if (!request.extra.bytes.empty())
+    if (auto decoded = decode(request.extra)) extra = std::move(*decoded);
+  spot->query_ = make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed}, extra);
   if (spot->query_.cloud.size() < kFewestPoints)
     return fail("the LPC has {} usable points; at least {} are needed", spot->query_.cloud.size(),
                 kFewestPoints);

@@ -13,6 +13,7 @@ constexpr auto kPreparePeriod = std::chrono::milliseconds(200);
 GlobalCloudOptions cloud_options(const ServerOptions& options) {
   GlobalCloudOptions cloud;
   cloud.snapshot.voxel_size_m = options.localizer.voxel_size_m;
+  cloud.snapshot.feature_sampling = options.localizer.sampling;
   return cloud;
 }
 

@@ -57,7 +57,6 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
     while (frames.size() > options_.max_frames_per_lidar || frames.front()->stamp_ns() < oldest)
       frames.pop_front();
   }
-  arrived_.notify_all();
   return {};
 }
 
@@ -145,21 +144,6 @@ void GlobalCloud::prepare() {
     room = room_of(frames);
   }
   if (!room->surfaces()->cloud.empty()) (void)room->surfaces()->field_fine();
-}
-
-bool GlobalCloud::settled(StampNs stamp_ns) const {
-  bool any = false, passed = true;
-  for (std::size_t lidar = 0; lidar < frames_.size(); ++lidar) {
-    any = any || nearest_frame(lidar, stamp_ns) != nullptr;
-    passed =
-        passed && !frames_[lidar].empty() && frames_[lidar].back()->stamp_ns() > stamp_ns + options_.match_ns;
-  }
-  return any || passed;
-}
-
-void GlobalCloud::await(StampNs stamp_ns, std::chrono::milliseconds limit) {
-  std::unique_lock lock(mutex_);
-  arrived_.wait_for(lock, limit, [&] { return settled(stamp_ns); });
 }
 
 }  // namespace liloc

@@ -1,7 +1,5 @@
 #pragma once
 // The room as the ceiling sees it now: the newest frames of every LiDAR, and immutable snapshots of them.
-#include <chrono>
-#include <condition_variable>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -44,10 +42,6 @@ class GlobalCloud {
   /// Costs nothing while the room does not change. Called by a thread of its own.
   void prepare();
 
-  /// Waits until `nearest` has an answer for the stamp, or newer frames show that it never will, or `limit` is
-  /// over. At 6 Hz the nearest frame of a fresh request is often still to come.
-  void await(StampNs stamp_ns, std::chrono::milliseconds limit);
-
   [[nodiscard]] const Site& site() const { return site_; }
 
  private:
@@ -62,12 +56,10 @@ class GlobalCloud {
   [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);                             ///< mutex_ held
   [[nodiscard]] std::shared_ptr<const StitchedRoom> room_of(const std::vector<Frame>& frames);  ///< mutex_ held
   [[nodiscard]] Frame nearest_frame(std::size_t lidar, StampNs stamp_ns) const;  ///< null: none; mutex_ held
-  [[nodiscard]] bool settled(StampNs stamp_ns) const;                            ///< mutex_ held
 
   const Site site_;
   const GlobalCloudOptions options_;
   mutable std::mutex mutex_;
-  std::condition_variable arrived_;
   std::vector<std::deque<Frame>> frames_;  ///< per LiDAR, by rising stamp
   std::vector<Watch> watches_;             ///< per LiDAR
   int epoch_ =

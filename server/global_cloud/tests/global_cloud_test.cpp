@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <thread>
-
 namespace liloc {
 namespace {
 
@@ -92,14 +90,6 @@ TEST(GlobalCloud, PointsAndDepthGiveTheSameCloud) {
   const auto cloud_sensor = depth_to_cloud(wall(kT0), kCamera);
   ASSERT_TRUE(points.add_points(0, kT0, *cloud_sensor));
   EXPECT_EQ((*depth.nearest(kT0))->target()->cloud.size(), (*points.nearest(kT0))->target()->cloud.size());
-}
-
-TEST(GlobalCloud, AwaitReturnsWhenTheFrameComes) {
-  GlobalCloud cloud(two_lidars(), {});
-  ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));
-  std::jthread late([&] { EXPECT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(200)))); });
-  cloud.await(kT0 + from_ms(190), std::chrono::seconds(20));
-  EXPECT_TRUE(cloud.nearest(kT0 + from_ms(190)));
 }
 
 }  // namespace

@@ -57,7 +57,6 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   SpotProblem problem{room,
                       query,
                       std::nullopt,
-                      std::nullopt,
                       [&]() -> const Described& { return room_described; },
                       [&]() -> const Described& { return query_described; },
                       options.seed,

@@ -170,7 +170,7 @@ std::vector<Candidate> feature_search(const Target& target, const Described& tar
   }
   std::vector<Candidate> all;
   for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
-  return distinct(std::move(all), 0.25, radians(8), options.propose);
+  return distinct(std::move(all), options.propose);
 }
 
 }  // namespace liloc

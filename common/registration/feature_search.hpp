@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "common/registration/candidate.hpp"
 #include "common/registration/fpfh.hpp"
-#include "common/registration/gravity_search.hpp"
 #include "common/registration/target.hpp"
 
 namespace liloc {

@@ -173,22 +173,6 @@ std::vector<Eigen::Vector3f> every_nth(const std::vector<Eigen::Vector3f>& point
 
 }  // namespace
 
-std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distance_m, double angle_rad,
-                                std::size_t most) {
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  std::vector<Candidate> kept;
-  for (const Candidate& c : candidates) {
-    if (kept.size() >= most) break;
-    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& k) {
-      return liloc::distance_m(k.T_map_sensor, c.T_map_sensor) < distance_m &&
-             angle_between_rad(k.T_map_sensor, c.T_map_sensor) < angle_rad;
-    });
-    if (!known) kept.push_back(c);
-  }
-  return kept;
-}
-
 std::vector<Candidate> gravity_search(const Target& target, const Query& query,
                                       const Eigen::Vector3d& up_sensor, const GravitySearchOptions& options) {
   const ScoreField& coarse = target->field_coarse();
@@ -248,7 +232,7 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query,
     candidate.score = score / (ScoreField::kSurface * static_cast<double>(third.level_points.size()));
     candidates.push_back(candidate);
   }
-  return distinct(std::move(candidates), 0.25, radians(8), options.propose);
+  return distinct(std::move(candidates), options.propose);
 }
 
 }  // namespace liloc

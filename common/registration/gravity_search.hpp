@@ -2,14 +2,10 @@
 #include <chrono>
 #include <vector>
 
+#include "common/registration/candidate.hpp"
 #include "common/registration/target.hpp"
 
 namespace liloc {
-
-struct Candidate {
-  Pose T_map_sensor = Pose::Identity();
-  double score = 0;  ///< the proposer's own; only `judge` compares proposers
-};
 
 struct GravitySearchOptions {
   double yaw_step_deg = 5.0;
@@ -26,9 +22,5 @@ struct GravitySearchOptions {
 [[nodiscard]] std::vector<Candidate> gravity_search(const Target& target, const Query& query,
                                                     const Eigen::Vector3d& up_sensor,
                                                     const GravitySearchOptions& options = {});
-
-/// Sorts by score and keeps the best of each group closer than `distance_m` and `angle_rad`.
-[[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> candidates, double distance_m,
-                                              double angle_rad, std::size_t most);
 
 }  // namespace liloc

@@ -35,7 +35,7 @@ std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector
   const double sketch_tolerance_m = 0.5 * (options.coarse_tolerance_m + options.fine_tolerance_m);
   for (Candidate& c : candidates)
     c.score = judge(target, query, query.sparse, c.T_map_sensor, options.coarse_tolerance_m, 4).score;
-  candidates = distinct(std::move(candidates), 0.25, radians(8), options.sketch_most);
+  candidates = distinct(std::move(candidates), options.sketch_most);
   RefineOptions sketch = options.refine;
   sketch.coarse_iterations = sketch.fine_iterations = 0;
   for (Candidate& c : candidates) {
@@ -43,7 +43,7 @@ std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector
     c.score = judge(target, query, query.sparse, c.T_map_sensor, sketch_tolerance_m, 2).score;
   }
   std::vector<Hypothesis> refined;
-  for (const Candidate& c : distinct(std::move(candidates), 0.25, radians(8), options.refine_most))
+  for (const Candidate& c : distinct(std::move(candidates), options.refine_most))
     refined.push_back(refine_and_judge(problem, c.T_map_sensor, options));
   std::stable_sort(refined.begin(), refined.end(), [](const Hypothesis& a, const Hypothesis& b) {
     return a.judgement.score > b.judgement.score;
@@ -51,8 +51,7 @@ std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector
   std::vector<Hypothesis> kept;
   for (const Hypothesis& h : refined) {
     const bool known = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& k) {
-      return distance_m(k.T_map_sensor(), h.T_map_sensor()) < 0.25 &&
-             angle_between_rad(k.T_map_sensor(), h.T_map_sensor()) < radians(8);
+      return same_place(k.T_map_sensor(), h.T_map_sensor());
     });
     if (!known && kept.size() < options.keep) kept.push_back(h);
   }

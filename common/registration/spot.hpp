@@ -17,7 +17,6 @@ struct SpotProblem {
   const Target& target;
   const Query& query;
   std::optional<Eigen::Vector3d> up_sensor;  ///< against gravity
-  std::optional<Pose> T_map_sensor_predicted;
   std::function<const Described&()> target_described, query_described;
   std::uint64_t seed = 1;
   int threads = 1;

@@ -137,9 +137,8 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
   const Pose predicted = *T_map_odom_ * request.T_odom_sensor;
   const PosePrior prior{predicted, sd_rad_, sd_m_, verify_.spot_sd_m * std::sqrt(kPairsOfASpot)};
   Hypothesis here = refine_and_judge(spot.problem(), predicted, {}, &prior);
-  const bool good = distance_m(here.T_map_sensor(), predicted) < verify_.tracks.gate_m &&
-                    angle_between_rad(here.T_map_sensor(), predicted) < verify_.tracks.gate_rad &&
-                    fits(here, verify_.tracks);
+  const bool good =
+      same_place(here.T_map_sensor(), predicted, verify_.tracks.gate) && fits(here, verify_.tracks);
   if (!good) here.alignment.T_target_source = predicted;
   report(here, last_margin_, reply);
   if (!good) {

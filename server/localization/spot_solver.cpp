@@ -20,10 +20,8 @@ bool convincing(const std::vector<Hypothesis>& found) {
 /// Merges two lists of hypotheses, best first, one per place.
 std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypothesis>& b) {
   for (const Hypothesis& h : b)
-    if (std::none_of(a.begin(), a.end(), [&](const Hypothesis& k) {
-          return distance_m(k.T_map_sensor(), h.T_map_sensor()) < 0.25 &&
-                 angle_between_rad(k.T_map_sensor(), h.T_map_sensor()) < radians(8);
-        }))
+    if (std::none_of(a.begin(), a.end(),
+                     [&](const Hypothesis& k) { return same_place(k.T_map_sensor(), h.T_map_sensor()); }))
       a.push_back(h);
   std::stable_sort(a.begin(), a.end(), [](const Hypothesis& x, const Hypothesis& y) {
     return x.judgement.score > y.judgement.score;
@@ -49,7 +47,7 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
     return fail("the LPC has {} usable points; at least {} are needed", spot->query_.cloud.size(),
                 kFewestPoints);
   Spot* raw = spot.get();
-  spot->problem_.emplace(SpotProblem{spot->snapshot_->target(), spot->query_, request.up_sensor, std::nullopt,
+  spot->problem_.emplace(SpotProblem{spot->snapshot_->target(), spot->query_, request.up_sensor,
                                      [raw]() -> const Described& { return raw->snapshot_->described(); },
                                      [raw, options]() -> const Described& {
                                        std::call_once(raw->described_once_, [&] {

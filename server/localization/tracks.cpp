@@ -4,14 +4,6 @@
 #include <numeric>
 
 namespace liloc {
-namespace {
-
-bool near(const Pose& a, const Pose& b, double angle_rad, double distance) {
-  return distance_m(a, b) <= distance && angle_between_rad(a, b) <= angle_rad;
-}
-
-}  // namespace
-
 double Track::total() const {
   return std::accumulate(scores.begin(), scores.end(), 0.0);
 }
@@ -38,13 +30,13 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
   bool own = false;
   std::optional<Hypothesis> here;
   for (std::size_t i = 0; i < found.size() && !here; ++i)
-    if (near(found[i].T_map_sensor(), predicted, options_.gate_rad, options_.gate_m)) {
+    if (same_place(found[i].T_map_sensor(), predicted, options_.gate)) {
       here = found[i];
       (*taken)[i] = true;
       own = true;
     }
   if (!here) here = refine_and_judge(spot.problem(), predicted);
-  const bool stayed = near(here->T_map_sensor(), predicted, options_.gate_rad, options_.gate_m);
+  const bool stayed = same_place(here->T_map_sensor(), predicted, options_.gate);
   if (stayed)
     track->T_map_odom = here->T_map_sensor() * spot.T_odom_sensor().inverse();
   else
@@ -72,19 +64,16 @@ Track Tracks::founded(const Hypothesis& hypothesis) const {
   return track;
 }
 
-bool Tracks::same_place(const Track& a, const Track& b) const {
-  const Pose& T_odom_sensor = spots_.back()->T_odom_sensor();
-  return near(a.T_map_odom * T_odom_sensor, b.T_map_odom * T_odom_sensor, 2 * options_.gate_rad,
-              2 * options_.gate_m);
-}
-
 void Tracks::prune() {
   std::stable_sort(tracks_.begin(), tracks_.end(),
                    [](const Track& a, const Track& b) { return a.total() > b.total(); });
+  const Pose& T_odom_sensor = spots_.back()->T_odom_sensor();
+  const PlaceGate wide{2 * options_.gate.distance_m, 2 * options_.gate.angle_rad};
   std::vector<Track> kept;
   for (Track& track : tracks_)
-    if (kept.size() < options_.most_tracks &&
-        std::none_of(kept.begin(), kept.end(), [&](const Track& k) { return same_place(k, track); }))
+    if (kept.size() < options_.most_tracks && std::none_of(kept.begin(), kept.end(), [&](const Track& k) {
+          return same_place(k.T_map_odom * T_odom_sensor, track.T_map_odom * T_odom_sensor, wide);
+        }))
       kept.push_back(std::move(track));
   tracks_ = std::move(kept);
 }

@@ -24,11 +24,12 @@ struct Track {
 struct TrackOptions {
   std::size_t memory = 5;  ///< spots
   std::size_t most_tracks = 6;
-  double gate_rad = radians(6.0), gate_m = 0.25;  ///< how far a spot may lie from its prediction
-  double fits_agree = 0.12;                       ///< least share of device points on seen surfaces
-  double fits_overlap = 0.93;                     ///< least share of agreeing among judged device points
-  double fits_map_agree = 0.90;                   ///< the same for ceiling points in the device's view
-  double fits_bound = 0.5;  ///< least share of agreeing points with a surface along their normal
+  PlaceGate gate{0.25,
+                 radians(6.0)};  ///< how far a spot may lie from its prediction; twice that apart are rivals
+  double fits_agree = 0.12;      ///< least share of device points on seen surfaces
+  double fits_overlap = 0.93;    ///< least share of agreeing among judged device points
+  double fits_map_agree = 0.90;  ///< the same for ceiling points in the device's view
+  double fits_bound = 0.5;       ///< least share of agreeing points with a surface along their normal
 };
 
 /// Whether free space and surfaces bear a pose out: points that lie where a surface was seen must also lie
@@ -56,7 +57,6 @@ class Tracks {
   void extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found,
               std::vector<bool>* taken) const;
   [[nodiscard]] Track founded(const Hypothesis& hypothesis) const;
-  [[nodiscard]] bool same_place(const Track& a, const Track& b) const;
   void prune();
 
   TrackOptions options_;

@@ -15,7 +15,7 @@ struct WatchedRoom {
   Query query;
   Eigen::Vector3d up_device;
 
-  [[nodiscard]] SpotProblem problem() const { return {target, query, up_device, std::nullopt, {}, {}, 1, 1}; }
+  [[nodiscard]] SpotProblem problem() const { return {target, query, up_device, {}, {}, 1, 1}; }
 };
 
 inline std::vector<Pose> ceiling_poses() {

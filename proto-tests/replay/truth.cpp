@@ -77,20 +77,6 @@ std::size_t nearest_index(const std::vector<DepthFile>& files, StampNs stamp_ns)
   return static_cast<std::size_t>(std::min_element(files.begin(), files.end(), nearer) - files.begin());
 }
 
-Points ceiling_cloud(const Recording& recording, StampNs stamp_ns) {
-  Points all;
-  for (const LidarRecording& lidar : recording.lidars) {
-    if (lidar.depth.empty()) continue;
-    const DepthFile& file = lidar.depth[nearest_index(lidar.depth, stamp_ns)];
-    if (std::llabs(file.stamp_ns - stamp_ns) > kCeilingTolerance_ns) continue;
-    const Result<DepthImage> image = read_depth(file, lidar.info.camera);
-    if (!image) continue;  // a corrupt frame is no frame
-    for (const auto& p : points_of(*image, lidar.info.camera, kCeilingRangeM))
-      all.push_back(lidar.info.T_map_sensor * p);
-  }
-  return voxel_means(all);
-}
-
 }  // namespace
 
 Result<Truth> Truth::of(const DeviceRecording& device) {
@@ -124,17 +110,37 @@ double Truth::path_m() const {
   return length;
 }
 
+double overlap_at_truth(const std::vector<PlacedFrame>& ceiling, const PlacedFrame& device) {
+  Points all;
+  for (const PlacedFrame& frame : ceiling)
+    for (const auto& p : points_of(frame.image, frame.camera, kCeilingRangeM))
+      all.push_back(frame.T_map_sensor * p);
+  const Points seen = voxel_means(points_of(device.image, device.camera, kDeviceRangeM));
+  if (all.empty() || seen.empty()) return 0;
+  const NearGrid grid(voxel_means(all));
+  const auto near = std::count_if(seen.begin(), seen.end(),
+                                  [&](const auto& p) { return grid.any_near(device.T_map_sensor * p); });
+  return static_cast<double>(near) / static_cast<double>(seen.size());
+}
+
 double overlap_at_truth(const Recording& recording, const DeviceRecording& device, const DepthFile& frame,
                         const Pose& T_map_sensor) {
-  const Points ceiling = ceiling_cloud(recording, frame.stamp_ns);
+  std::vector<DepthImage> images;
+  std::vector<const GlobalLidar*> lidars;
+  for (const LidarRecording& lidar : recording.lidars) {
+    if (lidar.depth.empty()) continue;
+    const DepthFile& file = lidar.depth[nearest_index(lidar.depth, frame.stamp_ns)];
+    if (std::llabs(file.stamp_ns - frame.stamp_ns) > kCeilingTolerance_ns) continue;
+    Result<DepthImage> image = read_depth(file, lidar.info.camera);
+    if (!image) continue;  // a corrupt frame is no frame
+    images.push_back(std::move(*image));
+    lidars.push_back(&lidar.info);
+  }
+  std::vector<PlacedFrame> ceiling;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    ceiling.push_back({images[i], lidars[i]->camera, lidars[i]->T_map_sensor});
   const Result<DepthImage> image = read_depth(frame, device.info.camera);
-  if (ceiling.empty() || !image) return 0;
-  const Points seen = voxel_means(points_of(*image, device.info.camera, kDeviceRangeM));
-  if (seen.empty()) return 0;
-  const NearGrid grid(ceiling);
-  const auto near =
-      std::count_if(seen.begin(), seen.end(), [&](const auto& p) { return grid.any_near(T_map_sensor * p); });
-  return static_cast<double>(near) / static_cast<double>(seen.size());
+  return image ? overlap_at_truth(ceiling, {*image, device.info.camera, T_map_sensor}) : 0;
 }
 
 }  // namespace liloc::replay

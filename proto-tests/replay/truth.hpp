@@ -27,8 +27,17 @@ class Truth {
   std::vector<Pose> poses_;
 };
 
+/// A depth frame and where it was taken from.
+struct PlacedFrame {
+  const DepthImage& image;
+  const Camera& camera;
+  Pose T_map_sensor;
+};
+
 /// Share of the device's points within 6 m (0.05 m voxels) that lie within 0.075 m of the ceiling clouds of
 /// that moment, with the device at its true pose; 0 without ceiling frames within 100 ms, or with no points.
+[[nodiscard]] double overlap_at_truth(const std::vector<PlacedFrame>& ceiling, const PlacedFrame& device);
+/// The same from files.
 [[nodiscard]] double overlap_at_truth(const Recording& recording, const DeviceRecording& device,
                                       const DepthFile& frame, const Pose& T_map_sensor);
 

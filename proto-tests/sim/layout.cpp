@@ -120,14 +120,15 @@ class Furnisher {
 void furnish(Random& random, const SimOptions& options, Layout& layout) {
   const bool symmetric = options.kind == SiteKind::symmetric, corridor = options.kind == SiteKind::corridor;
   Furnisher furnisher(random, layout.size_m, symmetric, layout.items);
-  const double area = layout.size_m.x() * layout.size_m.y() * (symmetric ? 0.5 : 1.0);
-  const double around = 2 * (layout.size_m.x() + layout.size_m.y()) * (symmetric ? 0.5 : 1.0);
+  const double floor_m2 = layout.size_m.x() * layout.size_m.y() * (symmetric ? 0.5 : 1.0);
+  const double wall_m = 2 * (layout.size_m.x() + layout.size_m.y()) * (symmetric ? 0.5 : 1.0);
+  const double area = options.clutter * floor_m2, around = options.clutter * wall_m;
   const auto times = [&](double count, auto&& put) {
     for (int i = 0; i < static_cast<int>(count + random.unit()); ++i) put();
   };
   if (options.kind == SiteKind::area) {
-    times(area / 40, [&] { furnisher.pillar(make_pillar(random, layout.size_m.z())); });
-    times(area / 35, [&] { furnisher.anywhere(make_partition(random), 0.9, true); });
+    times(floor_m2 / 40, [&] { furnisher.pillar(make_pillar(random, layout.size_m.z())); });
+    times(floor_m2 / 35, [&] { furnisher.anywhere(make_partition(random), 0.9, true); });
   } else if (!corridor) {
     times(0.7, [&] { furnisher.pillar(make_pillar(random, layout.size_m.z())); });
   }

@@ -28,7 +28,8 @@ Result<SimOptions> SimOptions::validated() const {
         Range{"height_m", height_m, 2.2, 12}, Range{"device_rate_hz", device_rate_hz, 1, 60},
         Range{"device_speed_m_s", device_speed_m_s, 0.05, 2}, Range{"imu_rate_hz", imu_rate_hz, 50, 1000}})
     if (auto good = check_or_zero(range); !good) return tl::unexpected(good.error());
-  for (const Range& range : {Range{"people", double(people), 0, 30},
+  for (const Range& range : {Range{"clutter", clutter, 0, 4},
+                             Range{"people", double(people), 0, 30},
                              Range{"moved_items", double(moved_items), -1, 50},
                              Range{"pushed_items", double(pushed_items), -1, 50},
                              Range{"lidars", double(lidars), 1, 8},

@@ -24,7 +24,8 @@ struct SimOptions {
   std::uint64_t seed = 1;  ///< everything follows from it: the same options give the same recording
   SiteKind kind = SiteKind::office;
   double width_m = 0, depth_m = 0, height_m = 0;  ///< of the site; 0: drawn by the seed near the kind's size
-  int people = 2;                                 ///< walking about, without those who carry devices (0..30)
+  double clutter = 1;     ///< scales how much furniture stands about; 0: pillars and partitions alone
+  int people = 2;         ///< walking about, without those who carry devices (0..30)
   int moved_items = -1;   ///< furniture moved since the reference scan; -1: half as many as people
   int pushed_items = -1;  ///< furniture pushed during the run; -1: a third as many as people
 

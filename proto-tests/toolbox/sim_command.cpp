@@ -84,6 +84,7 @@ void add_site_options(CLI::App& command, SimArguments& arguments) {
   command.add_option("--width", o.width_m, "Of the site in metres; 0: by the seed")->capture_default_str();
   command.add_option("--depth", o.depth_m, "Of the site in metres; 0: by the seed")->capture_default_str();
   command.add_option("--height", o.height_m, "Of the site in metres; 0: by the seed")->capture_default_str();
+  command.add_option("--clutter", o.clutter, "Scales how much furniture stands about")->capture_default_str();
   command.add_option("--people", o.people, "Walking about")->capture_default_str();
   command
       .add_option("--moved", o.moved_items,

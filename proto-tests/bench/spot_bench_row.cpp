@@ -1,0 +1,42 @@
+#include "proto-tests/bench/spot_bench_row.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Cholesky>
+#include <fstream>
+
+namespace liloc::bench {
+
+Row judged(SpotReply reply, const Pose& T_map_sensor_true) {
+  Row row;
+  row.reply = std::move(reply);
+  if (!row.reply.T_map_sensor) return row;
+  const Pose& T = *row.reply.T_map_sensor;
+  row.error_deg = degrees(angle_between_rad(T, T_map_sensor_true));
+  row.error_m = distance_m(T, T_map_sensor_true);
+  const Eigen::Matrix3d R = T_map_sensor_true.linear().transpose();
+  row.error << so3_log(R * T.linear()), R * (T.translation() - T_map_sensor_true.translation());
+  row.nees = row.error.dot(row.reply.covariance.ldlt().solve(row.error));
+  return row;
+}
+
+Status write_csv(const std::string& path, const std::vector<Row>& rows) {
+  std::ofstream out(path);
+  out << "site,seed,client,seq,cold,overlap_truth,error_deg,error_m,status,reason,fitness,overlap,margin,"
+         "latency_ms,nees,ex_rad,ey_rad,ez_rad,ex_m,ey_m,ez_m,sx_rad,sy_rad,sz_rad,sx_m,sy_m,sz_m,text\n";
+  for (const Row& r : rows) {
+    const Vector6d sd = r.reply.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+    out << fmt::format("\"{}\",{},{},{},{},{:.3f},{:.2f},{:.4f},{},{},{:.3f},{:.3f},{:.3f},{:.1f},{:.2f},",
+                       r.site, r.seed, r.reply.client_id, r.reply.seq, r.cold ? 1 : 0, r.overlap, r.error_deg,
+                       r.error_m, name_of(r.reply.status), name_of(r.reply.reason), r.reply.fitness,
+                       r.reply.overlap, r.reply.margin, r.reply.latency_ms, r.nees);
+    for (const Vector6d& numbers : {r.error, sd})
+      out << fmt::format("{:.6f},", fmt::join(numbers.begin(), numbers.end(), ","));
+    out << fmt::format("\"{}\"\n", r.reply.text);
+  }
+  if (!out.flush()) return fail("{}: cannot be written; name a file in a folder that exists", path);
+  return {};
+}
+
+}  // namespace liloc::bench

@@ -1,0 +1,98 @@
+#include "proto-tests/bench/spot_bench_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+namespace liloc::bench {
+namespace {
+
+using Filter = std::function<bool(const Row&)>;
+
+void print_heading(const char* title) {
+  fmt::print("\n{}\n{:>10} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9}\n", title, "", "spots", "10d 0.3m", "3d 0.1m",
+             "verified", "wrong ver", "refused");
+}
+
+void print_line(const std::vector<Row>& rows, const std::string& name, const Filter& filter) {
+  std::size_t n = 0, loose = 0, strict = 0, verified = 0, wrong = 0, refused = 0;
+  for (const Row& r : rows) {
+    if (!filter(r)) continue;
+    ++n;
+    loose += r.right();
+    strict += r.within(3, 0.1);
+    verified += r.reply.verified();
+    wrong += r.reply.verified() && !r.right();
+    refused += !r.reply.verified();
+  }
+  const auto share = [&](std::size_t k) {
+    return n == 0 ? 0.0 : 100.0 * static_cast<double>(k) / static_cast<double>(n);
+  };
+  fmt::print("{:>10} {:>6} {:>8.1f}% {:>8.1f}% {:>8.1f}% {:>9} {:>8.1f}%\n", name, n, share(loose),
+             share(strict), share(verified), wrong, share(refused));
+}
+
+}  // namespace
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+}
+
+void print_success(const std::vector<Row>& rows, bool cold) {
+  print_heading(cold ? "cold, by overlap" : "with history, by overlap");
+  const auto line = [&](const std::string& name, double low, double high) {
+    print_line(rows, name,
+               [=](const Row& r) { return r.cold == cold && r.overlap >= low && r.overlap < high; });
+  };
+  for (int d = 0; d < 10; ++d)
+    line(fmt::format("{:.1f}-{:.1f}", d / 10.0, (d + 1) / 10.0), d / 10.0, (d + 1) / 10.0 + (d == 9));
+  line("over 0.3", 0.3, 2);
+  line("all", -1, 2);
+  std::vector<double> latency;
+  for (const Row& r : rows)
+    if (r.cold == cold) latency.push_back(r.reply.latency_ms);
+  fmt::print("latency: median {:.1f} ms, p90 {:.1f} ms\n", percentile(latency, 0.5), percentile(latency, 0.9));
+}
+
+void print_by_site(const std::vector<Row>& rows) {
+  std::map<std::string, int> kinds;
+  for (const Row& r : rows) ++kinds[r.site.substr(0, r.site.find(' '))];
+  for (const bool cold : {true, false}) {
+    print_heading(cold ? "cold, overlap over 0.3" : "with history, overlap over 0.3");
+    for (const auto& [kind, count] : kinds)
+      print_line(rows, kind, [&, name = kind](const Row& r) {
+        return r.cold == cold && r.overlap >= 0.3 && r.site.starts_with(name);
+      });
+  }
+}
+
+Consistency consistency_of(const std::vector<Row>& rows) {
+  constexpr double kLow = 1.237, kHigh = 14.449;  // 95 % of chi-squared with six degrees of freedom
+  std::vector<double> nees;
+  double sum = 0;
+  for (const Row& r : rows)
+    if (r.reply.verified() && r.right()) {  // a wrong answer has no covariance to speak of
+      nees.push_back(r.nees);
+      sum += std::min(r.nees, 100.0);
+    }
+  if (nees.empty()) return {};
+  const auto inside = std::ranges::count_if(nees, [](double v) { return v >= kLow && v <= kHigh; });
+  const auto count = static_cast<double>(nees.size());
+  return {nees.size(), percentile(nees, 0.5), sum / count, static_cast<double>(inside) / count};
+}
+
+void print_consistency(const std::vector<Row>& rows) {
+  const Consistency c = consistency_of(rows);
+  fmt::print(
+      "\ncovariance of {} verified answers: NEES median {:.1f} (5.3 expected), mean {:.1f} (6), {:.0f} % "
+      "within "
+      "the 95 % bounds\n",
+      c.count, c.median, c.mean, 100 * c.inside);
+}
+
+}  // namespace liloc::bench

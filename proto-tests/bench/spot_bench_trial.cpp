@@ -1,0 +1,153 @@
+#include "proto-tests/bench/spot_bench_trial.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <deque>
+#include <limits>
+
+#include "client/src/engine.hpp"
+#include "proto-tests/replay/truth.hpp"
+#include "server/localization/localizer.hpp"
+
+namespace liloc::bench {
+namespace {
+
+constexpr StampNs kHold_ns = from_ms(100);  // longest wait for the ceiling; the server's --hold-ms
+constexpr std::size_t kRecentFrames = 4;
+
+struct Asked {
+  SpotRequest request;
+  DepthImage image;
+  Pose T_map_sensor_true;
+};
+
+struct Device {
+  explicit Device(EngineOptions options) : engine(std::move(options)) {}
+  Engine engine;
+  std::deque<Asked> held;  ///< not yet answered; oldest first
+};
+
+EngineOptions engine_options(const DeviceInfo& device) {
+  EngineOptions options;
+  options.client_id = device.id;
+  options.camera = device.camera;
+  options.T_imu_sensor = device.T_imu_sensor;
+  options.still_seconds = device.still_seconds;
+  return options;
+}
+
+class Trial {
+ public:
+  Trial(const Stage& stage, const TrialOptions& options)
+      : stage_(stage),
+        options_(options),
+        cloud_(stage.site, {}),
+        localizer_(cloud_, {.threads = options.threads}),
+        recent_(stage.site.global_lidars.size()) {
+    for (const DeviceInfo& device : stage.devices)
+      devices_.push_back(std::make_unique<Device>(engine_options(device)));
+  }
+
+  [[nodiscard]] Status take(sim::SimEvent event) {
+    return std::visit([&](auto& payload) { return take(std::move(payload), event.at_ns); }, event.payload);
+  }
+
+  std::vector<Row> finish() {
+    answer_due(std::numeric_limits<StampNs>::max());
+    return std::move(rows_);
+  }
+
+ private:
+  Status take(sim::LidarFrame frame, StampNs at_ns) {
+    auto& recent = recent_[frame.lidar];
+    recent.push_back(frame.image);
+    if (recent.size() > kRecentFrames) recent.pop_front();
+    if (auto taken = cloud_.add_depth(frame.lidar, std::move(frame.image)); !taken) return taken;
+    answer_due(at_ns);
+    return {};
+  }
+
+  Status take(const sim::DeviceImu& imu, StampNs) { return devices_[imu.device]->engine.add_imu(imu.sample); }
+
+  Status take(sim::DeviceFrame frame, StampNs at_ns) {
+    Device& device = *devices_[frame.device];
+    if (auto placed = device.engine.add_depth(frame.image); !placed) return tl::unexpected(placed.error());
+    if (auto request = device.engine.take_request()) {
+      if (!options_.gravity) request->up_sensor.reset();
+      device.held.push_back({std::move(*request), std::move(frame.image), frame.T_map_sensor});
+    }
+    answer_due(at_ns);
+    return {};
+  }
+
+  /// Answers what, as in the server, need not or must not wait longer for the ceiling.
+  void answer_due(StampNs now_ns) {
+    const auto all_seen = [&](StampNs stamp_ns) {
+      return std::ranges::all_of(recent_, [&](const auto& frames) {
+        return !frames.empty() && frames.back().stamp_ns >= stamp_ns - GlobalCloudOptions{}.match_ns;
+      });
+    };
+    for (std::size_t i = 0; i < devices_.size(); ++i)
+      while (!devices_[i]->held.empty()) {
+        const Asked& asked = devices_[i]->held.front();
+        if (!all_seen(asked.request.stamp_ns) && now_ns < asked.request.stamp_ns + kHold_ns) break;
+        answer(asked, i);
+        devices_[i]->held.pop_front();
+      }
+  }
+
+  void answer(const Asked& asked, std::size_t device) {
+    const double overlap = overlap_of(asked, stage_.devices[device].camera);
+    cloud_.prepare();  // which the server does beside its requests
+    SpotRequest alone = asked.request;
+    alone.cold = true;
+    alone.extra.bytes.clear();
+    add_row(localizer_.locate(alone), true, overlap, asked);
+    const SpotReply reply = localizer_.locate(asked.request);
+    devices_[device]->engine.add_reply(reply);
+    add_row(reply, false, overlap, asked);
+  }
+
+  void add_row(SpotReply reply, bool cold, double overlap, const Asked& asked) {
+    if (reply.reason == Reason::no_gpc || reply.reason == Reason::bad_cloud) return;
+    Row row = judged(std::move(reply), asked.T_map_sensor_true);
+    row.site = stage_.name;
+    row.seed = stage_.seed;
+    row.cold = cold;
+    row.overlap = overlap;
+    rows_.push_back(std::move(row));
+  }
+
+  [[nodiscard]] double overlap_of(const Asked& asked, const Camera& camera) const {
+    std::vector<replay::PlacedFrame> ceiling;
+    const auto age = [&](const DepthImage& image) {
+      return std::llabs(image.stamp_ns - asked.request.stamp_ns);
+    };
+    for (std::size_t i = 0; i < recent_.size(); ++i) {
+      const auto nearest = std::ranges::min_element(recent_[i], {}, age);
+      if (nearest == recent_[i].end() || age(*nearest) > GlobalCloudOptions{}.match_ns) continue;
+      const GlobalLidar& lidar = stage_.site.global_lidars[i];
+      ceiling.push_back({*nearest, lidar.camera, lidar.T_map_sensor});
+    }
+    return replay::overlap_at_truth(ceiling, {asked.image, camera, asked.T_map_sensor_true});
+  }
+
+  const Stage& stage_;
+  const TrialOptions options_;
+  GlobalCloud cloud_;
+  Localizer localizer_;
+  std::vector<std::unique_ptr<Device>> devices_;
+  std::vector<std::deque<DepthImage>> recent_;  ///< per LiDAR, newest last
+  std::vector<Row> rows_;
+};
+
+}  // namespace
+
+Result<std::vector<Row>> run_trial(Stage stage, const TrialOptions& options) {
+  Trial trial(stage, options);
+  while (auto event = stage.next())
+    if (const Status taken = trial.take(std::move(*event)); !taken) return tl::unexpected(taken.error());
+  return trial.finish();
+}
+
+}  // namespace liloc::bench

@@ -54,13 +54,11 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   const Target room = make_target(std::move(thin), {}, voxel);
   const Described room_described = describe(room->coarse, {10 * voxel, 1.0, options.seed});
   const Described query_described = describe(query.medium, {10 * voxel, 1.0, options.seed});
-  SpotProblem problem{room,
-                      query,
-                      std::nullopt,
-                      [&]() -> const Described& { return room_described; },
-                      [&]() -> const Described& { return query_described; },
-                      options.seed,
-                      options.threads};
+  SpotProblem problem{room, query};
+  problem.target_described = [&]() -> const Described& { return room_described; };
+  problem.query_described = [&]() -> const Described& { return query_described; };
+  problem.seed = options.seed;
+  problem.threads = options.threads;
   if (options.gravity) problem.up_sensor = Eigen::Vector3d::UnitZ();
   FeatureSearchOptions features;
   features.grid = false;

@@ -97,14 +97,13 @@ void offer_maxima(const std::vector<std::int16_t>& sums, int width, int height, 
     }
 }
 
-Eigen::Matrix3d yaw_rotation(double yaw_rad) {
-  return Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+Eigen::Matrix3d yaw_rotation(double yaw_rad, const Eigen::Vector3d& up_map) {
+  return Eigen::AngleAxisd(yaw_rad, up_map).toRotationMatrix();
 }
 
 /// Scores every position of one yaw.
 void search_yaw(const PaddedField& field, const std::vector<Eigen::Vector3f>& level_points, double cell_m,
-                int yaw, double yaw_rad, Best* best) {
-  const Eigen::Matrix3f R = yaw_rotation(yaw_rad).cast<float>();
+                int yaw, const Eigen::Matrix3f& R, Best* best) {
   const float inverse = static_cast<float>(1.0 / cell_m);
   std::vector<Eigen::Vector3i> offsets;
   offsets.reserve(level_points.size());
@@ -127,9 +126,10 @@ void search_yaw(const PaddedField& field, const std::vector<Eigen::Vector3f>& le
 struct Climber {
   const ScoreField& field;
   const std::vector<Eigen::Vector3f> level_points;
+  const Eigen::Vector3d up_map;
 
   [[nodiscard]] int score(const Eigen::Vector4d& pose) const {
-    const Eigen::Matrix3f R = yaw_rotation(pose[3]).cast<float>();
+    const Eigen::Matrix3f R = yaw_rotation(pose[3], up_map).cast<float>();
     const Eigen::Vector3f t = pose.head<3>().cast<float>();
     int sum = 0;
     for (const auto& p : level_points) sum += field.at(R * p + t);
@@ -179,12 +179,12 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query,
   if (coarse.empty() || query.sparse.empty()) return {};
   const auto deadline = std::chrono::steady_clock::now() + options.time_limit;
   const Eigen::Matrix3d R_level_sensor =
-      Eigen::Quaterniond::FromTwoVectors(up_sensor, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      Eigen::Quaterniond::FromTwoVectors(up_sensor, options.up_map).toRotationMatrix();
   std::vector<Eigen::Vector3f> level_points;
   float range = 0;
   for (const auto& p : query.sparse.points) {
     level_points.push_back(R_level_sensor.cast<float>() * p);
-    range = std::max(range, level_points.back().head<2>().norm());
+    range = std::max(range, level_points.back().norm());
   }
   const int margin = std::min(64, static_cast<int>(std::ceil(range / coarse.cell_m())) + 1);
   const PaddedField padded(coarse, margin);
@@ -195,7 +195,8 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query,
   std::vector<Best> best(static_cast<std::size_t>(threads), Best(kFirstPass * options.keep));
   const auto work = [&](int worker) {  // fixed shares, so that the answer does not depend on scheduling
     for (int yaw = worker; yaw < yaws && std::chrono::steady_clock::now() < deadline; yaw += threads)
-      search_yaw(padded, first_points, coarse.cell_m(), yaw, yaw * 2 * M_PI / yaws,
+      search_yaw(padded, first_points, coarse.cell_m(), yaw,
+                 yaw_rotation(yaw * 2 * M_PI / yaws, options.up_map).cast<float>(),
                  &best[static_cast<std::size_t>(worker)]);
   };
   {
@@ -211,7 +212,8 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query,
   if (cells.size() > kFirstPass * options.keep) cells.resize(kFirstPass * options.keep);
 
   std::vector<Start> starts;
-  const Climber second{coarse, level_points}, third{target->field_fine(), every_nth(level_points, 2)};
+  const Climber second{coarse, level_points, options.up_map},
+      third{target->field_fine(), every_nth(level_points, 2), options.up_map};
   for (const Cell& cell : cells) {
     const Eigen::Vector3d position =
         coarse.origin().cast<double>() +
@@ -227,7 +229,7 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query,
   for (auto& [pose, ignored] : starts) {
     const int score = third.climb(&pose);
     Candidate candidate;
-    candidate.T_map_sensor.linear() = yaw_rotation(pose[3]) * R_level_sensor;
+    candidate.T_map_sensor.linear() = yaw_rotation(pose[3], options.up_map) * R_level_sensor;
     candidate.T_map_sensor.translation() = pose.head<3>();
     candidate.score = score / (ScoreField::kSurface * static_cast<double>(third.level_points.size()));
     candidates.push_back(candidate);

@@ -13,6 +13,7 @@ struct GravitySearchOptions {
   std::size_t propose = 40;  ///< distinct poses returned, best first
   std::chrono::steady_clock::duration time_limit = std::chrono::seconds(2);
   int threads = 1;
+  Eigen::Vector3d up_map = Eigen::Vector3d::UnitZ();  ///< unit; other than z where the map is not level
 };
 
 /// With gravity known four unknowns remain: every x, y, z and yaw at 0.2 m and `yaw_step_deg` is scored on the

@@ -1,14 +1,42 @@
 #include "common/registration/spot.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "common/registration/up.hpp"
 
 namespace liloc {
+namespace {
+
+constexpr double kContradicts_rad = radians(5.0);  // planes tell up to a degree or two
+constexpr double kSure = 0.5;                      // confidence above which planes may contradict the device
+constexpr double kRival = 0.5;  // of the likeliest direction's confidence: less likely ones are not tried
+
+}  // namespace
+
+std::vector<UpPair> ups_to_try(const SpotProblem& problem) {
+  const std::vector<UpHypothesis> planes = find_up(problem.query.medium);
+  std::vector<UpPair> ups;
+  if (problem.up_sensor) {
+    ups.push_back({*problem.up_sensor, problem.ups_map.front()});
+    const bool contradicted = !planes.empty() && planes.front().confidence > kSure &&
+                              planes.front().up.dot(*problem.up_sensor) < std::cos(kContradicts_rad);
+    if (contradicted) ups.push_back({planes.front().up, problem.ups_map.front()});
+    return ups;
+  }
+  for (const UpHypothesis& plane : planes)
+    for (const Eigen::Vector3d& up_map : problem.ups_map)
+      if (plane.confidence >= kRival * planes.front().confidence) ups.push_back({plane.up, up_map});
+  return ups;
+}
 
 std::vector<Candidate> GravityProposer::propose(const SpotProblem& problem) const {
-  if (!problem.up_sensor) return {};
+  if (!up_ && !problem.up_sensor) return {};
+  const UpPair up = up_ ? *up_ : UpPair{*problem.up_sensor, problem.ups_map.front()};
   GravitySearchOptions options;
   options.threads = problem.threads;
-  return gravity_search(problem.target, problem.query, *problem.up_sensor, options);
+  options.up_map = up.map;
+  return gravity_search(problem.target, problem.query, up.sensor, options);
 }
 
 std::vector<Candidate> FeatureProposer::propose(const SpotProblem& problem) const {

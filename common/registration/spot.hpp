@@ -16,8 +16,10 @@ namespace liloc {
 struct SpotProblem {
   const Target& target;
   const Query& query;
-  std::optional<Eigen::Vector3d> up_sensor;  ///< against gravity
-  std::function<const Described&()> target_described, query_described;
+  std::optional<Eigen::Vector3d> up_sensor = std::nullopt;  ///< against gravity, as the device says
+  std::vector<Eigen::Vector3d> ups_map{
+      Eigen::Vector3d::UnitZ()};  ///< what may be up in the map, likeliest first
+  std::function<const Described&()> target_described = {}, query_described = {};
   std::uint64_t seed = 1;
   int threads = 1;
 };
@@ -31,10 +33,23 @@ class Proposer {
   [[nodiscard]] virtual std::vector<Candidate> propose(const SpotProblem& problem) const = 0;
 };
 
+/// A direction of the device's frame and one of the map's that are taken for the same: up.
+struct UpPair {
+  Eigen::Vector3d sensor, map;
+};
+/// What to search with, likeliest first: gravity as the device says, unless the planes it sees contradict, and
+/// what floors, ceilings and walls tell.
+[[nodiscard]] std::vector<UpPair> ups_to_try(const SpotProblem& problem);
+
 class GravityProposer final : public Proposer {
  public:
+  /// Without `up` it takes the device's word.
+  explicit GravityProposer(std::optional<UpPair> up = std::nullopt) : up_(std::move(up)) {}
   [[nodiscard]] std::string_view name() const override { return "gravity"; }
   [[nodiscard]] std::vector<Candidate> propose(const SpotProblem& problem) const override;
+
+ private:
+  std::optional<UpPair> up_;
 };
 
 class FeatureProposer final : public Proposer {

@@ -3,6 +3,7 @@
 #include "common/base/log.hpp"
 #include "common/geometry/voxel.hpp"
 #include "common/registration/normals.hpp"
+#include "common/registration/up.hpp"
 
 namespace liloc {
 namespace {
@@ -60,6 +61,16 @@ const Described& StitchedRoom::described() const {
     described_ = describe(surfaces()->coarse, {10 * options_.voxel_size_m, options_.feature_sampling, 1});
   });
   return described_;
+}
+
+const std::vector<Eigen::Vector3d>& StitchedRoom::ups_map() const {
+  std::call_once(ups_once_, [this] {
+    Eigen::Vector3d expected = Eigen::Vector3d::Zero();  // hung upright, looking level to straight down
+    for (const auto& part : parts_)
+      expected += part->lidar().T_map_sensor.linear() * Eigen::Vector3d(0, -1, -0.5);
+    ups_map_ = ups_of_map(surfaces()->coarse, expected);
+  });
+  return ups_map_;
 }
 
 const Target& Snapshot::target() const {

@@ -29,6 +29,7 @@ class LidarSurfaces {
   /// Voxelized, map frame, normals towards the sensor.
   [[nodiscard]] const Cloud& cloud_map() const;
   [[nodiscard]] SightView view() const;
+  [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
 
  private:
   const DepthImage image_;
@@ -69,11 +70,14 @@ class StitchedRoom {
   [[nodiscard]] const Parts& parts() const { return parts_; }
   [[nodiscard]] const std::shared_ptr<const Surfaces>& surfaces() const;
   [[nodiscard]] const Described& described() const;
+  /// What may be up in the map frame, likeliest first: z alone in a site that is set up as it should be.
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& ups_map() const;
 
  private:
   const Parts parts_;
   const SnapshotOptions options_;
-  mutable std::once_flag surfaces_once_, described_once_;
+  mutable std::once_flag surfaces_once_, described_once_, ups_once_;
+  mutable std::vector<Eigen::Vector3d> ups_map_;
   mutable std::shared_ptr<const Surfaces> surfaces_;
   mutable Described described_;
 };

@@ -1,5 +1,9 @@
 #include "server/localization/localizer.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -9,6 +13,20 @@
 #include "server/localization/spot_solver.hpp"
 
 namespace liloc {
+namespace {
+
+constexpr double kGravityOff_rad = radians(5.0);
+
+/// A verified pose shows whether what the device takes for gravity is right.
+void note_gravity(const SpotRequest& request, const Snapshot& snapshot, SpotReply* reply) {
+  if (!reply->verified() || !request.up_sensor) return;
+  const Eigen::Vector3d up_map = reply->T_map_sensor->linear() * *request.up_sensor;
+  const double off_rad = std::acos(std::clamp(up_map.dot(snapshot.room()->ups_map().front()), -1.0, 1.0));
+  if (off_rad > kGravityOff_rad)
+    reply->text += fmt::format("; the device's gravity is off by {:.0f} deg and was dropped", degrees(off_rad));
+}
+
+}  // namespace
 
 Result<Method> method_from(std::string_view name) {
   if (name == "liloc") return Method::liloc;
@@ -50,6 +68,7 @@ struct Localizer::Impl {
     SpotReply reply = refusal(request, Reason::none, "");
     reply.gpc_stamp_ns = (*spot)->gpc_stamp_ns();
     held->answer(request, *spot, &reply);
+    note_gravity(request, **room, &reply);
     return reply;
   }
 };

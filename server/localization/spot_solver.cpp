@@ -47,17 +47,17 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
     return fail("the LPC has {} usable points; at least {} are needed", spot->query_.cloud.size(),
                 kFewestPoints);
   Spot* raw = spot.get();
-  spot->problem_.emplace(SpotProblem{spot->snapshot_->target(), spot->query_, request.up_sensor,
-                                     [raw]() -> const Described& { return raw->snapshot_->described(); },
-                                     [raw, options]() -> const Described& {
-                                       std::call_once(raw->described_once_, [&] {
-                                         raw->described_ = describe(
-                                             raw->query_.medium,
-                                             {10 * options.voxel_size_m, kQueryFeatureShare, options.seed});
-                                       });
-                                       return raw->described_;
-                                     },
-                                     options.seed * 7919 + request.seq, options.threads});
+  spot->problem_.emplace(SpotProblem{
+      spot->snapshot_->target(), spot->query_, request.up_sensor, spot->snapshot_->room()->ups_map(),
+      [raw]() -> const Described& { return raw->snapshot_->described(); },
+      [raw, options]() -> const Described& {
+        std::call_once(raw->described_once_, [&] {
+          raw->described_ =
+              describe(raw->query_.medium, {10 * options.voxel_size_m, kQueryFeatureShare, options.seed});
+        });
+        return raw->described_;
+      },
+      options.seed * 7919 + request.seq, options.threads});
   return spot;
 }
 
@@ -69,8 +69,11 @@ double margin_of(const std::vector<Hypothesis>& hypotheses) {
 
 std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions&) {
   const SpotProblem& problem = spot.problem();
-  std::vector<Hypothesis> found = judge_candidates(problem, GravityProposer().propose(problem));
-  if (convincing(found)) return found;
+  std::vector<Hypothesis> found;
+  for (const UpPair& up : ups_to_try(problem)) {
+    found = merged(std::move(found), judge_candidates(problem, GravityProposer(up).propose(problem)));
+    if (convincing(found)) return found;
+  }
   return merged(std::move(found),
                 judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem)));
 }

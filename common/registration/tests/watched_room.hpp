@@ -15,7 +15,7 @@ struct WatchedRoom {
   Query query;
   Eigen::Vector3d up_device;
 
-  [[nodiscard]] SpotProblem problem() const { return {target, query, up_device, {}, {}, 1, 1}; }
+  [[nodiscard]] SpotProblem problem() const { return {target, query, up_device}; }
 };
 
 inline std::vector<Pose> ceiling_poses() {
@@ -24,12 +24,16 @@ inline std::vector<Pose> ceiling_poses() {
           scene::looking({3.0, 4.8, 2.6}, radians(-90), radians(35))};
 }
 
-inline Target watch(const scene::BoxRoom& room, unsigned seed, double noise_m = 0.005) {
+/// `T_map_room`: how the map's frame lies to the room, whose z is up.
+inline Target watch(const scene::BoxRoom& room, unsigned seed, double noise_m = 0.005,
+                    const Pose& T_map_room = Pose::Identity()) {
   const Camera camera = scene::small_camera();
   Cloud stitched;
   std::vector<SightView> views;
-  for (const Pose& T_map_sensor : ceiling_poses()) {
-    const DepthImage image = scene::render(room, T_map_sensor, camera, seed * 10 + views.size(), noise_m, seed);
+  for (const Pose& T_room_sensor : ceiling_poses()) {
+    const Pose T_map_sensor = T_map_room * T_room_sensor;
+    const DepthImage image =
+        scene::render(room, T_room_sensor, camera, seed * 10 + views.size(), noise_m, seed);
     const Cloud thin =
         with_normals(voxel_downsample(*depth_to_cloud(image, camera), 0.05), Eigen::Vector3f::Zero());
     append(stitched, transformed(T_map_sensor, thin));

@@ -26,8 +26,9 @@ struct Cloud {
   return moved;
 }
 
-/// Both clouds in the same frame. Normals survive only if both sides have them.
+/// Both clouds in the same frame. Normals survive only if both sides have them; one without points lacks none.
 inline void append(Cloud& to, const Cloud& from) {
+  if (from.empty()) return;
   const bool keep_normals = (to.empty() || to.has_normals()) && from.has_normals();
   to.points.insert(to.points.end(), from.points.begin(), from.points.end());
   if (keep_normals)

@@ -27,10 +27,8 @@ struct Ranked {
 /// Bare clouds have no free space to contradict: the number of points that fit, normals too, decides.
 std::vector<Ranked> rank(const SpotProblem& problem, const std::vector<Candidate>& candidates,
                          double distance_m) {
-  JudgeOptions options;
-  options.refine_most = options.keep = 20;
   std::vector<Ranked> ranked;
-  for (const Hypothesis& h : judge_candidates(problem, candidates, options))
+  for (const Hypothesis& h : judge_candidates(problem, candidates))
     ranked.push_back({h, fit_of(problem.target, problem.query.cloud, h.T_map_sensor(), distance_m)});
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
     return a.hypothesis.alignment.pairs > b.hypothesis.alignment.pairs;
@@ -59,6 +57,8 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   problem.query_described = [&]() -> const Described& { return query_described; };
   problem.seed = options.seed;
   problem.threads = options.threads;
+  problem.judging = judge_options_for(voxel);
+  problem.judging.refine_most = problem.judging.keep = 20;
   if (options.gravity) problem.up_sensor = Eigen::Vector3d::UnitZ();
   FeatureSearchOptions features;
   features.grid = false;

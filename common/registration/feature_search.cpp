@@ -67,23 +67,26 @@ bool normals_agree(const Eigen::Isometry3f& T, const Match& m) {
   return (T.linear() * m.source_normal).dot(m.target_normal) > 0.7F;
 }
 
-/// Mean worth of the points on the field, or a low value as soon as the first points promise less than `floor`.
+/// Mean worth of the points on the field, each at least `least`, or a low value as soon as the first points
+/// promise less than `floor`.
 float field_score(const ScoreField& field, const std::vector<Eigen::Vector3f>& points,
-                  const Eigen::Isometry3f& T, float floor) {
+                  const Eigen::Isometry3f& T, int least, float floor) {
   int sum = 0, seen = 0;
   for (const auto& p : points) {
-    sum += field.at(T * p);
+    sum += std::max(least, field.at(T * p));
     if (++seen == 60 && static_cast<float>(sum) < 0.6F * floor * 60) return -1e9F;
   }
   return static_cast<float>(sum) / static_cast<float>(std::max(seen, 1));
 }
 
 std::vector<Candidate> ransac(const ScoreField& field, const std::vector<Eigen::Vector3f>& points,
-                              const std::vector<Match>& matches, int iterations, float edge_ratio,
-                              std::uint64_t seed) {
+                              const std::vector<Match>& matches, int iterations,
+                              const FeatureSearchOptions& options, std::uint64_t seed) {
   constexpr std::size_t kKeep = 24;
   std::vector<Candidate> best;
   if (matches.size() < 3) return best;
+  const auto edge_ratio = static_cast<float>(options.edge_ratio);
+  const int least = options.free_space ? ScoreField::kFree : 0;
   std::mt19937_64 rng(seed);
   const auto worse = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
   float floor = 0;
@@ -95,7 +98,7 @@ std::vector<Candidate> ransac(const ScoreField& field, const std::vector<Eigen::
     if (!sides_agree(a, c, edge_ratio) || !sides_agree(b, c, edge_ratio)) continue;
     const Eigen::Isometry3f T = from_three(a, b, c);
     if (!normals_agree(T, a) || !normals_agree(T, b) || !normals_agree(T, c)) continue;
-    const float score = field_score(field, points, T, floor);
+    const float score = field_score(field, points, T, least, floor);
     if (score <= floor) continue;
     best.push_back({T.cast<double>(), score / ScoreField::kSurface});
     std::push_heap(best.begin(), best.end(), worse);
@@ -160,8 +163,8 @@ std::vector<Candidate> feature_search(const Target& target, const Described& tar
   const auto work = [&] {
     for (std::size_t i = next++; i < cells.size(); i = next++)
       found[i] = ransac(target->field_fine(), query.sparse.points,
-                        match_features(query_described, target_described, cells[i]), iterations,
-                        static_cast<float>(options.edge_ratio), options.seed * 1000003 + i);
+                        match_features(query_described, target_described, cells[i]), iterations, options,
+                        options.seed * 1000003 + i);
   };
   {
     std::vector<std::jthread> pool;

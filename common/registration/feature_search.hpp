@@ -24,6 +24,7 @@ struct FeatureSearchOptions {
   bool grid = true;          ///< Algorithm 2; false: one cell over everything
   double cell_m = 2.5;       ///< half the width of a cell
   int iterations = 60000;    ///< three-point samples, over all cells
+  bool free_space = true;    ///< samples lose by points in empty space; false: fitness alone, as in the paper
   double edge_ratio = 0.85;  ///< the sides of both triangles agree to this share
   std::size_t propose = 40;
   std::uint64_t seed = 1;

@@ -156,7 +156,7 @@ Alignment refine(const Target& target, const Query& query, const Pose& T_target_
     result.information = R.transpose() * sum.H * R / variance;
     result.inlier_rmse_m = std::sqrt(sum.squared / sum.weight);
   }
-  result.fitness = fit_of(target, query.cloud, result.T_target_source, 0.05).fitness;
+  result.fitness = fit_of(target, query.cloud, result.T_target_source, options.fit_distance_m).fitness;
   return result;
 }
 

@@ -10,6 +10,7 @@ struct RefineOptions {
   int coarse_iterations = 6;          ///< thinned clouds, at distances down to twice the end
   int fine_iterations = 8;            ///< thinned device cloud against the full target
   double min_normal_agreement = 0.5;  ///< cosine between the two normals of a pair
+  double fit_distance_m = 0.05;       ///< a point with one of the target's so near counts for the fitness
   bool point_to_point = false;        ///< the paper's ICP, for comparison
 };
 

@@ -14,6 +14,16 @@ constexpr double kRival = 0.5;  // of the likeliest direction's confidence: less
 
 }  // namespace
 
+JudgeOptions judge_options_for(double voxel_size_m) {
+  JudgeOptions options;
+  const double scale = voxel_size_m / 0.05;
+  options.fine_tolerance_m *= scale;
+  options.coarse_tolerance_m = std::max(options.coarse_tolerance_m, 2 * options.fine_tolerance_m);
+  options.refine.end_distance_m *= scale;
+  options.refine.fit_distance_m *= scale;
+  return options;
+}
+
 std::vector<UpPair> ups_to_try(const SpotProblem& problem) {
   const std::vector<UpHypothesis> planes = find_up(problem.query.medium);
   std::vector<UpPair> ups;
@@ -48,7 +58,8 @@ std::vector<Candidate> FeatureProposer::propose(const SpotProblem& problem) cons
 }
 
 Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor_guess,
-                            const JudgeOptions& options, const PosePrior* prior) {
+                            const PosePrior* prior) {
+  const JudgeOptions& options = problem.judging;
   Hypothesis h;
   h.alignment = refine(problem.target, problem.query, T_map_sensor_guess, options.refine, prior);
   h.judgement =
@@ -56,8 +67,8 @@ Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor
   return h;
 }
 
-std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector<Candidate> candidates,
-                                         const JudgeOptions& options) {
+std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector<Candidate> candidates) {
+  const JudgeOptions& options = problem.judging;
   const Target& target = problem.target;
   const Query& query = problem.query;
   const double sketch_tolerance_m = 0.5 * (options.coarse_tolerance_m + options.fine_tolerance_m);
@@ -72,7 +83,7 @@ std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector
   }
   std::vector<Hypothesis> refined;
   for (const Candidate& c : distinct(std::move(candidates), options.refine_most))
-    refined.push_back(refine_and_judge(problem, c.T_map_sensor, options));
+    refined.push_back(refine_and_judge(problem, c.T_map_sensor));
   std::stable_sort(refined.begin(), refined.end(), [](const Hypothesis& a, const Hypothesis& b) {
     return a.judgement.score > b.judgement.score;
   });

@@ -12,6 +12,17 @@
 
 namespace liloc {
 
+/// How candidates are weighed; the defaults are for voxels of 0.05 m.
+struct JudgeOptions {
+  double coarse_tolerance_m = 0.12, fine_tolerance_m = 0.05;
+  std::size_t sketch_most = 14;  ///< of the candidates, how many are refined with few points
+  std::size_t refine_most = 5;   ///< of those, how many are refined fully
+  std::size_t keep = 5;
+  RefineOptions refine;
+};
+/// What has to follow the voxel size does: tolerances and the distances of pairs.
+[[nodiscard]] JudgeOptions judge_options_for(double voxel_size_m);
+
 /// All that a proposer may look at. `target_described` and `query_described` are made when first asked for.
 struct SpotProblem {
   const Target& target;
@@ -22,6 +33,7 @@ struct SpotProblem {
   std::function<const Described&()> target_described = {}, query_described = {};
   std::uint64_t seed = 1;
   int threads = 1;
+  JudgeOptions judging = {};
 };
 
 /// A way to find candidate poses. Stateless; any thread may call it.
@@ -69,21 +81,12 @@ struct Hypothesis {
   [[nodiscard]] const Pose& T_map_sensor() const { return alignment.T_target_source; }
 };
 
-struct JudgeOptions {
-  double coarse_tolerance_m = 0.12, fine_tolerance_m = 0.05;
-  std::size_t sketch_most = 14;  ///< of the candidates, how many are refined with few points
-  std::size_t refine_most = 5;   ///< of those, how many are refined fully
-  std::size_t keep = 5;
-  RefineOptions refine;
-};
-
 /// Judges candidates roughly, refines the best, judges them again: distinct hypotheses, best first.
 [[nodiscard]] std::vector<Hypothesis> judge_candidates(const SpotProblem& problem,
-                                                       std::vector<Candidate> candidates,
-                                                       const JudgeOptions& options = {});
+                                                       std::vector<Candidate> candidates);
 
 /// Refines and judges a single pose, e.g. a predicted one.
 [[nodiscard]] Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor_guess,
-                                          const JudgeOptions& options = {}, const PosePrior* prior = nullptr);
+                                          const PosePrior* prior = nullptr);
 
 }  // namespace liloc

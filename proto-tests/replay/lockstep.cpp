@@ -39,16 +39,11 @@ EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions&
   return engine;
 }
 
-GlobalCloudOptions cloud_options(const ReplayOptions& options) {
-  GlobalCloudOptions cloud;
-  cloud.snapshot.voxel_size_m = options.voxel_m;
-  cloud.snapshot.feature_sampling = options.sampling;
-  return cloud;
-}
-
 LocalizerOptions localizer_options(const ReplayOptions& options) {
   LocalizerOptions localizer;
   localizer.method = *method_from(options.method);
+  if (!options.verify.empty()) localizer.verify = *verify_from(options.verify);
+  if (!options.icp.empty()) localizer.icp = *icp_from(options.icp);
   localizer.voxel_size_m = options.voxel_m;
   localizer.sampling = options.sampling;
   localizer.seed = options.seed;
@@ -60,7 +55,7 @@ class Lockstep {
  public:
   Lockstep(const Recording& recording, const ReplayOptions& options)
       : recording_(recording),
-        cloud_(recording.site, cloud_options(options)),
+        cloud_(recording.site, global_cloud_options_for(localizer_options(options))),
         localizer_(cloud_, localizer_options(options)),
         newest_ceiling_ns_(recording.lidars.size(), std::numeric_limits<StampNs>::min()) {}
 

@@ -21,6 +21,15 @@ Result<ReplayOptions> ReplayOptions::validated() const {
         in_range("sampling", sampling, 0.01, 1), in_range("threads", threads, 1, 64)})
     if (!status) return tl::unexpected(status.error());
   if (const auto known = method_from(method); !known) return tl::unexpected(known.error());
+  LocalizerOptions localizer;
+  localizer.method = *method_from(method);
+  if (!verify.empty()) {
+    const auto known = verify_from(verify);
+    if (!known) return tl::unexpected(known.error());
+    localizer.verify = *known;
+  }
+  if (const auto known = icp_from(icp); !icp.empty() && !known) return tl::unexpected(known.error());
+  if (const auto works = localizer.validated(); !works) return tl::unexpected(works.error());
   if (const auto known = local_method_from(local); !known) return tl::unexpected(known.error());
   if (features == "learned")
     return fail("--features: learned needs a trained model, and this version has none; use --features fpfh");

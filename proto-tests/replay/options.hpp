@@ -16,6 +16,7 @@ struct ReplayOptions {
   std::uint64_t seed = 1;
   double interval_ms = 800, voxel_m = 0.05;
   std::string method = "liloc", local = "cloud", features = "fpfh";
+  std::string verify, icp;  ///< empty: the method's own
   double sampling = 0.5;
   std::vector<std::string> devices;  ///< ids to replay; empty: all of the recording
   bool cold = false;

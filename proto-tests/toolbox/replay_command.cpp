@@ -34,8 +34,12 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--interval-ms", options->interval_ms, "Longest time between global registrations")
       ->capture_default_str();
   command->add_option("--voxel", options->voxel_m, "Voxel size in metres")->capture_default_str();
-  command->add_option("--method", options->method, "liloc, dynamic-noopt, dynamic-nover or static-noopt")
+  command
+      ->add_option("--method", options->method,
+                   "liloc, or for comparison: paper, dynamic-noopt, dynamic-nover, static-noopt")
       ->capture_default_str();
+  command->add_option("--verify", options->verify, "tracks, paper or none; else the method's own");
+  command->add_option("--icp", options->icp, "point or plane; else the method's own");
   command->add_option("--local", options->local, "Local registration: cloud, inertial or dead-reckoning")
       ->capture_default_str();
   command->add_option("--features", options->features, "fpfh (learned needs a model, which this version lacks)")

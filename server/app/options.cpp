@@ -7,7 +7,7 @@ namespace liloc {
 namespace {
 
 struct Raw {
-  std::string method = "liloc";
+  std::string method = "liloc", verify, icp;
   int hold_ms = 100;
 };
 
@@ -28,8 +28,14 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   method->add_option("--voxel", options.localizer.voxel_size_m, "Voxel size of the global cloud, m")
       ->check(CLI::Range(0.01, 0.5))
       ->capture_default_str();
-  method->add_option("--method", raw.method, "liloc, dynamic-noopt, dynamic-nover or static-noopt")
+  method
+      ->add_option("--method", raw.method,
+                   "liloc, or for comparison: paper, dynamic-noopt, dynamic-nover, static-noopt")
       ->capture_default_str();
+  method->add_option("--verify", raw.verify,
+                     "tracks, paper (three equality checks) or none; else the method's own");
+  method->add_option("--icp", raw.icp,
+                     "Last refinement: plane, or point as in the paper; else the method's own");
   method->add_option("--sampling", options.localizer.sampling, "Share of points with features that RANSAC uses")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
@@ -59,6 +65,20 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       ->capture_default_str();
 }
 
+Status set_variants(const Raw& raw, LocalizerOptions& localizer) {
+  if (!raw.verify.empty()) {
+    const auto verify = verify_from(raw.verify);
+    if (!verify) return tl::unexpected(verify.error());
+    localizer.verify = *verify;
+  }
+  if (!raw.icp.empty()) {
+    const auto icp = icp_from(raw.icp);
+    if (!icp) return tl::unexpected(icp.error());
+    localizer.icp = *icp;
+  }
+  return localizer.validated();
+}
+
 }  // namespace
 
 Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
@@ -77,6 +97,7 @@ Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
   const auto method = method_from(raw.method);
   if (!method) return tl::unexpected(method.error());
   options.localizer.method = *method;
+  if (const auto set = set_variants(raw, options.localizer); !set) return tl::unexpected(set.error());
   options.service.hold = std::chrono::milliseconds(raw.hold_ms);
   options.localizer.server_id = options.service.server_id;
   if (const auto valid = options.service.validated(); !valid) return tl::unexpected(valid.error());

@@ -10,13 +10,6 @@ namespace {
 
 constexpr auto kPreparePeriod = std::chrono::milliseconds(200);
 
-GlobalCloudOptions cloud_options(const ServerOptions& options) {
-  GlobalCloudOptions cloud;
-  cloud.snapshot.voxel_size_m = options.localizer.voxel_size_m;
-  cloud.snapshot.feature_sampling = options.localizer.sampling;
-  return cloud;
-}
-
 StampNs wall_clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -27,7 +20,7 @@ StampNs wall_clock_ns() {
 
 Server::Server(const ServerOptions& options, Site site)
     : server_id_(options.service.server_id),
-      global_cloud_(std::move(site), cloud_options(options)),
+      global_cloud_(std::move(site), global_cloud_options_for(options.localizer)),
       localizer_(global_cloud_, options.localizer) {}
 
 Server::~Server() {
@@ -82,7 +75,7 @@ Status Server::open_streams(const ServerOptions& options) {
   backend.forget = [this](const std::string& client_id) { localizer_.forget(client_id); };
   // A LiDAR whose last frame still counts for the stamp need not show a newer one: people move in between,
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
-  const StampNs match_ns = cloud_options(options).match_ns;
+  const StampNs match_ns = GlobalCloudOptions{}.match_ns;
   backend.ready = [this, match_ns](StampNs stamp_ns) { return ingest_->seen(stamp_ns - match_ns); };
   backend.ceiling_now = [this](std::chrono::steady_clock::time_point at) { return ingest_->ceiling_now(at); };
   auto service = Service::create(*dispatcher_, options.service, std::move(backend));

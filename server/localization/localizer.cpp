@@ -28,14 +28,6 @@ void note_gravity(const SpotRequest& request, const Snapshot& snapshot, SpotRepl
 
 }  // namespace
 
-Result<Method> method_from(std::string_view name) {
-  if (name == "liloc") return Method::liloc;
-  if (name == "dynamic-noopt") return Method::dynamic_noopt;
-  if (name == "dynamic-nover") return Method::dynamic_nover;
-  if (name == "static-noopt") return Method::static_noopt;
-  return fail("method '{}' is unknown; choose liloc, dynamic-noopt, dynamic-nover or static-noopt", name);
-}
-
 struct Localizer::Impl {
   GlobalCloud& global_cloud;
   const LocalizerOptions options;

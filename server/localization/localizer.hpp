@@ -2,6 +2,7 @@
 // From a request and the room to an answer: propose, judge, verify. No I/O.
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/protocol/spot.hpp"
@@ -9,18 +10,37 @@
 
 namespace liloc {
 
-/// The paper's variants (section 7): `liloc` is everything, the others leave parts out for comparison.
-enum class Method { liloc, dynamic_noopt, dynamic_nover, static_noopt };
+/// How a spot is searched. `liloc` is everything; `paper` is the paper's way (sections 5.2 and 5.3), and the
+/// others are its baselines (section 7), which leave parts of that out.
+enum class Method { liloc, paper, dynamic_noopt, dynamic_nover, static_noopt };
 [[nodiscard]] Result<Method> method_from(std::string_view name);
+
+/// What makes an answer a verified one: tracks over the last spots, the paper's three checks, or nothing.
+enum class Verify { tracks, paper, none };
+[[nodiscard]] Result<Verify> verify_from(std::string_view name);
+
+/// What the last refinement minimizes: distances between points, as in the paper, or along normals.
+enum class Icp { point, plane };
+[[nodiscard]] Result<Icp> icp_from(std::string_view name);
 
 struct LocalizerOptions {
   Method method = Method::liloc;
+  std::optional<Verify> verify;  ///< empty: the method's own
+  std::optional<Icp> icp;        ///< empty: the method's own
   double voxel_size_m = 0.05;
   double sampling = 0.5;   ///< share of points with features that RANSAC uses (paper, section 5.2)
   std::uint64_t seed = 1;  ///< all randomness comes from it, the client id and the request's seq
   int threads = 1;         ///< per request
   std::string server_id = "liloc";
+
+  [[nodiscard]] Verify verify_or_default() const;
+  [[nodiscard]] Icp icp_or_default() const;
+  /// Errors: a combination that cannot work; names the options.
+  [[nodiscard]] Status validated() const;
 };
+
+/// The global cloud that a localizer of these options works on: the paper's was raw, people included.
+[[nodiscard]] GlobalCloudOptions global_cloud_options_for(const LocalizerOptions& options);
 
 /// Thread-safe: workers call `locate` side by side; requests of one client are answered in turn.
 class Localizer {

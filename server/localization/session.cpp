@@ -56,17 +56,17 @@ bool Session::conclusive(const std::vector<Hypothesis>& found) const {
 void Session::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
   if (request.cold) return answer_cold(spot, reply);
   if (!started_ || request.odom_segment != segment_) start_segment(request.odom_segment);
-  if (options_.method != Method::liloc) return answer_as_paper(spot, reply);
+  if (options_.verify_or_default() != Verify::tracks) return answer_as_paper(spot, reply);
   if (T_map_odom_) return answer_tracking(request, spot, reply);
   answer_searching(spot, reply);
 }
 
 void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) const {
-  const bool paper = options_.method != Method::liloc;
-  const auto found = paper ? search_as_paper(*spot, options_) : search(*spot, options_);
+  const auto found = search(*spot, options_);
   if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
   report(found.front(), margin_of(found), reply);
-  if (!paper && conclusive(found)) return conclude(SpotStatus::verified, Reason::conclusive, reply);
+  if (options_.verify_or_default() == Verify::tracks && conclusive(found))
+    return conclude(SpotStatus::verified, Reason::conclusive, reply);
   conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
 }
 
@@ -136,7 +136,7 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
   sd_m_ = std::hypot(sd_m_, std::max(request.odom_sd_m, verify_.step_sd_m));
   const Pose predicted = *T_map_odom_ * request.T_odom_sensor;
   const PosePrior prior{predicted, sd_rad_, sd_m_, verify_.spot_sd_m * std::sqrt(kPairsOfASpot)};
-  Hypothesis here = refine_and_judge(spot.problem(), predicted, {}, &prior);
+  Hypothesis here = refine_and_judge(spot.problem(), predicted, &prior);
   const bool good =
       same_place(here.T_map_sensor(), predicted, verify_.tracks.gate) && fits(here, verify_.tracks);
   if (!good) here.alignment.T_target_source = predicted;
@@ -174,11 +174,11 @@ void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<
 }
 
 void Session::answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
-  const auto found = search_as_paper(*spot, options_);
+  const auto found = search(*spot, options_);
   if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
   report(found.front(), margin_of(found), reply);
   const SpotPose own{found.front().T_map_sensor(), spot->T_odom_sensor()};
-  if (options_.method == Method::dynamic_nover) {
+  if (options_.verify_or_default() == Verify::none) {
     reply->T_map_odom = own.T_map_sensor * own.T_odom_sensor.inverse();
     return conclude(SpotStatus::verified, Reason::confirmed, reply);
   }

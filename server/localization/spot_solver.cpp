@@ -8,8 +8,8 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kFewestPoints = 150;  // fewer at 0.05 m are a patch of wall that fits everywhere
-constexpr double kQueryFeatureShare = 0.5;
+constexpr double kLeastSurface_m2 =
+    0.375;  // 150 points at 0.05 m: less is a patch of wall that fits everywhere
 
 /// A search that ends here needs no second opinion: much agrees, nothing contradicts, nobody is close.
 bool convincing(const std::vector<Hypothesis>& found) {
@@ -29,6 +29,22 @@ std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypo
   return a;
 }
 
+/// The paper's own spot localization: (grid-)RANSAC, ICP, best fitness wins.
+std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions& options) {
+  FeatureSearchOptions features;
+  features.grid = options.method == Method::paper || options.method == Method::dynamic_nover;
+  features.free_space = false;
+  std::vector<Hypothesis> found;
+  for (const Candidate& c : FeatureProposer(features).propose(spot.problem())) {
+    if (found.size() == spot.problem().judging.refine_most) break;
+    found.push_back(refine_and_judge(spot.problem(), c.T_map_sensor));
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Hypothesis& a, const Hypothesis& b) {
+    return a.alignment.fitness > b.alignment.fitness;
+  });
+  return found;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
@@ -43,9 +59,9 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
   if (!request.extra.bytes.empty())
     if (auto decoded = decode(request.extra)) extra = std::move(*decoded);
   spot->query_ = make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed}, extra);
-  if (spot->query_.cloud.size() < kFewestPoints)
-    return fail("the LPC has {} usable points; at least {} are needed", spot->query_.cloud.size(),
-                kFewestPoints);
+  const double fewest = kLeastSurface_m2 / (options.voxel_size_m * options.voxel_size_m);
+  if (static_cast<double>(spot->query_.cloud.size()) < fewest)
+    return fail("the LPC has {} usable points; at least {:.0f} are needed", spot->query_.cloud.size(), fewest);
   Spot* raw = spot.get();
   spot->problem_.emplace(SpotProblem{
       spot->snapshot_->target(), spot->query_, request.up_sensor, spot->snapshot_->room()->ups_map(),
@@ -53,11 +69,12 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
       [raw, options]() -> const Described& {
         std::call_once(raw->described_once_, [&] {
           raw->described_ =
-              describe(raw->query_.medium, {10 * options.voxel_size_m, kQueryFeatureShare, options.seed});
+              describe(raw->query_.medium, {10 * options.voxel_size_m, options.sampling, options.seed});
         });
         return raw->described_;
       },
-      options.seed * 7919 + request.seq, options.threads});
+      options.seed * 7919 + request.seq, options.threads, judge_options_for(options.voxel_size_m)});
+  spot->problem_->judging.refine.point_to_point = options.icp_or_default() == Icp::point;
   return spot;
 }
 
@@ -67,7 +84,8 @@ double margin_of(const std::vector<Hypothesis>& hypotheses) {
   return std::clamp(1.0 - hypotheses[1].judgement.score / hypotheses[0].judgement.score, 0.0, 1.0);
 }
 
-std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions&) {
+std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options) {
+  if (options.method != Method::liloc) return search_as_paper(spot, options);
   const SpotProblem& problem = spot.problem();
   std::vector<Hypothesis> found;
   for (const UpPair& up : ups_to_try(problem)) {
@@ -76,22 +94,6 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions&) {
   }
   return merged(std::move(found),
                 judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem)));
-}
-
-std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions& options) {
-  FeatureSearchOptions features;
-  features.grid = options.method == Method::dynamic_nover;
-  JudgeOptions judging;
-  judging.refine.point_to_point = true;
-  std::vector<Hypothesis> found;
-  for (const Candidate& c : FeatureProposer(features).propose(spot.problem())) {
-    if (found.size() == judging.refine_most) break;
-    found.push_back(refine_and_judge(spot.problem(), c.T_map_sensor, judging));
-  }
-  std::stable_sort(found.begin(), found.end(), [](const Hypothesis& a, const Hypothesis& b) {
-    return a.alignment.fitness > b.alignment.fitness;
-  });
-  return found;
 }
 
 }  // namespace liloc

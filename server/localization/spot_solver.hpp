@@ -33,12 +33,10 @@ class Spot {
   std::optional<SpotProblem> problem_;
 };
 
-/// Everything is tried that the problem allows, cheapest first; features only when gravity alone is not
-/// convincing. Distinct hypotheses, best first; may be empty.
+/// By the method of the options. `liloc`: everything is tried that the problem allows, cheapest first; features
+/// only when gravity alone is not convincing. The others: the paper's (grid-)RANSAC with ICP, best fitness
+/// first. Distinct hypotheses, best first; may be empty.
 [[nodiscard]] std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options);
-
-/// The paper's own spot localization, for comparison: (grid-)RANSAC, point-to-point ICP, best fitness wins.
-[[nodiscard]] std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions& options);
 
 /// Share by which the best score is above the second's, 0..1; 1 when it is alone.
 [[nodiscard]] double margin_of(const std::vector<Hypothesis>& hypotheses);

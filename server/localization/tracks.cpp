@@ -40,7 +40,8 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
   if (stayed)
     track->T_map_odom = here->T_map_sensor() * spot.T_odom_sensor().inverse();
   else
-    here->judgement = judge(spot.problem().target, spot.query(), spot.query().medium, predicted, 0.10);
+    here->judgement = judge(spot.problem().target, spot.query(), spot.query().medium, predicted,
+                            2 * spot.problem().judging.fine_tolerance_m);
   track->latest = *here;
   track->scores.push_back(here->judgement.score);
   track->found_own.push_back(own);

@@ -70,6 +70,17 @@ TEST(Search, NothingToSearchIsAnEmptyList) {
   EXPECT_TRUE(judge_candidates(w.problem(), {}).empty());
 }
 
+TEST(JudgeOptions, FollowTheVoxelSizeFromTheDefaults) {
+  const JudgeOptions usual, same = judge_options_for(0.05), fine = judge_options_for(0.03);
+  EXPECT_EQ(same.fine_tolerance_m, usual.fine_tolerance_m);
+  EXPECT_EQ(same.coarse_tolerance_m, usual.coarse_tolerance_m);
+  EXPECT_EQ(same.refine.end_distance_m, usual.refine.end_distance_m);
+  EXPECT_EQ(same.refine.fit_distance_m, usual.refine.fit_distance_m);
+  EXPECT_DOUBLE_EQ(fine.fine_tolerance_m, 0.03);
+  EXPECT_DOUBLE_EQ(fine.refine.fit_distance_m, 0.03);
+  EXPECT_GE(judge_options_for(0.08).coarse_tolerance_m, judge_options_for(0.08).fine_tolerance_m);
+}
+
 Cloud two_walls_and_a_box(unsigned seed) {
   const scene::BoxRoom room = scene::furnished_room(seed);
   Cloud cloud;

@@ -58,6 +58,8 @@ TEST(Program, BadUsageExitsWithTwo) {
   EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--workers", "many"})), 2);
   EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--queue", "0"})), 2);
   EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--method", "magic"})), 2);
+  EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--method", "paper", "--verify", "tracks"})), 2);
+  EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--icp", "plain"})), 2);
   EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--domain", "999"})), 2);
   EXPECT_EQ(exit_code(spawn({"--site", "no/such/site.json"})), 2);
 }

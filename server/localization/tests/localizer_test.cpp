@@ -23,7 +23,8 @@ struct World {
                            scene::looking({3.0, 4.8, 2.6}, radians(-90), radians(35))};
     for (std::size_t i = 0; i < poses.size(); ++i)
       site.global_lidars.push_back({"ceiling" + std::to_string(i), scene::small_camera(), 6, poses[i]});
-    cloud = std::make_unique<GlobalCloud>(site, GlobalCloudOptions{});
+    cloud = std::make_unique<GlobalCloud>(site, global_cloud_options_for(options));
+    voxel_size_m = options.voxel_size_m;
     localizer = std::make_unique<Localizer>(*cloud, options);
   }
 
@@ -47,7 +48,7 @@ struct World {
     r.T_odom_sensor = T_map_odom.inverse() * T_map_device;
     r.view = {camera, 0.25, 8.5};
     const auto image = scene::render(room, T_map_device, camera, r.stamp_ns, 0.005, seed);
-    r.lpc = *encode(voxel_downsample(*depth_to_cloud(image, camera), 0.05));
+    r.lpc = *encode(voxel_downsample(*depth_to_cloud(image, camera), voxel_size_m));
     r.up_sensor = T_map_device.linear().transpose() * Eigen::Vector3d::UnitZ();
     return r;
   }
@@ -58,6 +59,7 @@ struct World {
   }
 
   unsigned seed;
+  double voxel_size_m = 0.05;
   scene::BoxRoom room;
   Site site;
   std::unique_ptr<GlobalCloud> cloud;
@@ -240,23 +242,72 @@ TEST(Localizer, ManyClientsAtOnce) {
     });
 }
 
-class BaselineMethods : public testing::TestWithParam<const char*> {};
+class PaperMethods : public testing::TestWithParam<const char*> {};
 
-TEST_P(BaselineMethods, RunAndAnswer) {
+TEST_P(PaperMethods, RunAndAnswer) {
   LocalizerOptions options;
   options.method = *method_from(GetParam());
   World world(2, options);
   int answered = 0;
   for (int k = 0; k < 3; ++k) answered += world.ask(k).T_map_sensor.has_value();
   EXPECT_EQ(answered, 3);
+  EXPECT_FALSE(global_cloud_options_for(options).drop_moving) << "the paper's global cloud was raw";
 }
 
-INSTANTIATE_TEST_SUITE_P(Paper, BaselineMethods,
-                         testing::Values("static-noopt", "dynamic-noopt", "dynamic-nover"));
+INSTANTIATE_TEST_SUITE_P(Paper, PaperMethods,
+                         testing::Values("paper", "static-noopt", "dynamic-noopt", "dynamic-nover"));
 
-TEST(Method, AnUnknownNameListsTheKnown) {
+TEST(Methods, TheVerificationIsChosenApartFromTheSearch) {
+  LocalizerOptions options;
+  options.verify = Verify::none;
+  EXPECT_TRUE(World(2, options).ask(0).verified());
+  options.verify = Verify::paper;
+  World world(2, options);
+  for (int k = 0; k < 3; ++k) {
+    const SpotReply reply = world.ask(k);
+    EXPECT_EQ(reply.verified(), k == 2) << "three spots are checked against each other";
+    EXPECT_TRUE(!reply.verified() || near(*reply.T_map_sensor, world.truth(k)));
+  }
+}
+
+TEST(Methods, WhatCannotWorkOrIsUnknownIsSaid) {
+  LocalizerOptions options;
+  EXPECT_TRUE(options.validated());
+  options.method = Method::paper;
+  EXPECT_TRUE(options.validated());
+  options.verify = Verify::tracks;
+  EXPECT_THAT(options.validated().error().message, testing::HasSubstr("verify tracks"));
   EXPECT_THAT(method_from("magic").error().message, testing::HasSubstr("dynamic-nover"));
+  EXPECT_THAT(verify_from("").error().message, testing::HasSubstr("tracks"));
+  EXPECT_THAT(icp_from("plain").error().message, testing::HasSubstr("plane"));
 }
+
+struct Variant {
+  double voxel_m, sampling;
+  Icp icp;
+};
+
+class Variants : public testing::TestWithParam<Variant> {};
+
+TEST_P(Variants, FindTheWalk) {
+  LocalizerOptions options;
+  options.voxel_size_m = GetParam().voxel_m;
+  options.sampling = GetParam().sampling;
+  options.icp = GetParam().icp;
+  World world(3, options);
+  int verified = 0;
+  for (int k = 0; k < 5; ++k) {
+    const SpotReply reply = world.ask(k);
+    verified += reply.verified();
+    EXPECT_TRUE(!reply.verified() || near(*reply.T_map_sensor, world.truth(k))) << "spot " << k;
+  }
+  EXPECT_GE(verified, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Paper, Variants,
+                         testing::Values(Variant{0.03, 0.5, Icp::plane}, Variant{0.08, 0.5, Icp::plane},
+                                         Variant{0.05, 1.0, Icp::point}, Variant{0.05, 0.3, Icp::plane},
+                                         Variant{0.05, 0.2, Icp::plane}));
 
 }  // namespace
 }  // namespace liloc

@@ -131,7 +131,7 @@ void Engine::Impl::add_submap(SpotRequest& r) const {
   const Cloud standing = odometry.map().standing(r.stamp_ns - kSubmapAge, r.stamp_ns);
   const Cloud extra = outside_view(standing, r.T_odom_sensor, r.view, kSubmapPoints);
   if (extra.size() < kFewestSurfels) return;
-  if (auto encoded = encode(extra)) r.extra = std::move(*encoded);
+  if (auto encoded = encode(extra, {.voxel_size_m = 2 * options.voxel_size_m})) r.extra = std::move(*encoded);
 }
 
 Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cloud* points,
@@ -139,7 +139,7 @@ Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cl
   auto cloud =
       points != nullptr ? Result<Cloud>(*points) : depth_to_cloud(image, options.camera, depth_options());
   if (!cloud) return tl::unexpected(cloud.error());
-  auto lpc = encode(voxel_downsample(*cloud, options.voxel_size_m));
+  auto lpc = encode(voxel_downsample(*cloud, options.voxel_size_m), {.voxel_size_m = options.voxel_size_m});
   if (!lpc) return tl::unexpected(lpc.error());
   SpotRequest r;
   r.client_id = options.client_id;

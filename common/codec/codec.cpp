@@ -1,7 +1,10 @@
 #include "common/codec/codec.hpp"
 
+#include <cmath>
+
 #include "common/codec/draco.hpp"
 #include "common/codec/octree.hpp"
+#include "common/codec/voxel.hpp"
 
 namespace liloc {
 namespace {
@@ -14,28 +17,58 @@ Status check(const Cloud& cloud, std::string_view what) {
   return {};
 }
 
+Status check(const CodecOptions& options) {
+  if (options.quantization_bits < 6 || options.quantization_bits > 16)
+    return fail("quantization_bits is {}, must be 6..16", options.quantization_bits);
+  if (options.octree_depth < 4 || options.octree_depth > 12)
+    return fail("octree_depth is {}, must be 4..12", options.octree_depth);
+  if (!(options.voxel_size_m >= 0.01 && options.voxel_size_m <= 1))
+    return fail("voxel_size_m is {}, must be 0.01..1", options.voxel_size_m);
+  if (!(options.resolution_m >= options.voxel_size_m / codec::kMaxSteps))
+    return fail("resolution_m is {}, must be {} (a {}th of a voxel) or more", options.resolution_m,
+                options.voxel_size_m / codec::kMaxSteps, codec::kMaxSteps);
+  return {};
+}
+
+Result<std::vector<std::uint8_t>> bytes_of(const Cloud& cloud, const CodecOptions& options) {
+  switch (options.codec) {
+    case CloudCodec::draco:
+      return codec::encode_draco(cloud, options.quantization_bits);
+    case CloudCodec::octree:
+      return codec::encode_octree(cloud, options.octree_depth);
+    case CloudCodec::voxel:
+      return codec::encode_voxel(cloud, options.voxel_size_m,
+                                 static_cast<int>(std::ceil(options.voxel_size_m / options.resolution_m)));
+  }
+  return fail("codec is {}, must be 1 (Draco), 2 (octree) or 3 (voxel)", static_cast<int>(options.codec));
+}
+
+Result<Cloud> cloud_of(const EncodedCloud& encoded, std::size_t max_points) {
+  switch (encoded.codec) {
+    case CloudCodec::draco:
+      return codec::decode_draco(encoded.bytes, max_points);
+    case CloudCodec::octree:
+      return codec::decode_octree(encoded.bytes, max_points);
+    case CloudCodec::voxel:
+      return codec::decode_voxel(encoded.bytes, max_points);
+  }
+  return fail("codec is {}, must be 1 (Draco), 2 (octree) or 3 (voxel)", static_cast<int>(encoded.codec));
+}
+
 }  // namespace
 
 Result<EncodedCloud> encode(const Cloud& cloud, const CodecOptions& options) {
   if (cloud.empty() || cloud.size() > kMaxCodecPoints)
     return fail("cloud to encode has {} points, must be 1..{}; downsample it", cloud.size(), kMaxCodecPoints);
-  if (options.quantization_bits < 6 || options.quantization_bits > 16)
-    return fail("quantization_bits is {}, must be 6..16", options.quantization_bits);
-  if (options.octree_depth < 4 || options.octree_depth > 12)
-    return fail("octree_depth is {}, must be 4..12", options.octree_depth);
+  if (auto valid = check(options); !valid) return tl::unexpected(valid.error());
   if (auto valid = check(cloud, "cloud to encode"); !valid) return tl::unexpected(valid.error());
-  const bool draco = options.codec == CloudCodec::draco;
-  auto bytes = draco ? codec::encode_draco(cloud, options.quantization_bits)
-                     : codec::encode_octree(cloud, options.octree_depth);
+  auto bytes = bytes_of(cloud, options);
   if (!bytes) return tl::unexpected(bytes.error());
   return EncodedCloud{options.codec, std::move(*bytes)};
 }
 
 Result<Cloud> decode(const EncodedCloud& encoded, std::size_t max_points) {
-  if (encoded.codec != CloudCodec::draco && encoded.codec != CloudCodec::octree)
-    return fail("codec is {}, must be 1 (Draco) or 2 (octree)", static_cast<int>(encoded.codec));
-  auto cloud = encoded.codec == CloudCodec::draco ? codec::decode_draco(encoded.bytes, max_points)
-                                                  : codec::decode_octree(encoded.bytes, max_points);
+  auto cloud = cloud_of(encoded, max_points);
   if (!cloud) return cloud;
   if (auto valid = check(*cloud, "decoded cloud"); !valid) return tl::unexpected(valid.error());
   return cloud;

@@ -22,4 +22,9 @@ namespace liloc {
 /// dropped.
 [[nodiscard]] Cloud voxel_downsample(const Cloud& cloud, double voxel_size_m);
 
+/// The same, without normals, and where there are more than `most_points`, those that hold most: a voxel goes
+/// first the fewer points it holds beside its fullest face neighbour, where the surface lies that merely grazes
+/// it. What stays covers all surfaces, about one voxel thick. In no particular order.
+[[nodiscard]] Cloud fullest_voxels(const Cloud& cloud, double voxel_size_m, std::size_t most_points);
+
 }  // namespace liloc

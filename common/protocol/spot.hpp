@@ -15,11 +15,11 @@ namespace liloc {
 /// Raised when a message changes its meaning; a server answers other versions with Reason::protocol_version.
 constexpr std::uint16_t kProtocolVersion = 1;
 
-enum class CloudCodec : std::uint8_t { draco = 1, octree = 2 };
+enum class CloudCodec : std::uint8_t { draco = 1, octree = 2, voxel = 3 };
 
 /// A compressed cloud in the sensor frame.
 struct EncodedCloud {
-  CloudCodec codec = CloudCodec::draco;
+  CloudCodec codec = CloudCodec::voxel;
   std::vector<std::uint8_t> bytes;
 };
 

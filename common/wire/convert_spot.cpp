@@ -48,8 +48,8 @@ Status read_local_poses(const liloc_msg_SpotRequest& message, SpotRequest& reque
 }
 
 Status read_cloud(const liloc_msg_SpotRequest& message, SpotRequest& request) {
-  if (message.codec != 1 && message.codec != 2)
-    return fail("codec is {}, must be 1 (Draco) or 2 (octree)", message.codec);
+  if (message.codec < 1 || message.codec > 3)
+    return fail("codec is {}, must be 1 (Draco), 2 (octree) or 3 (voxel)", message.codec);
   if (message.lpc._length == 0) return fail("lpc is empty; send a frame's cloud");
   request.lpc.codec = static_cast<CloudCodec>(message.codec);
   request.lpc.bytes.assign(message.lpc._buffer, message.lpc._buffer + message.lpc._length);

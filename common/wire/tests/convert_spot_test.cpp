@@ -38,7 +38,7 @@ TEST(ConvertRequest, HostileFieldsAreNamed) {
       {"odom_sd_m", [](auto& m) { m.odom_sd_m = std::numeric_limits<double>::infinity(); }},
       {"local_poses", [](auto& m) { m.local_poses._buffer[0].T_odom_sensor.rotation_xyzw[3] = kNan; }},
       {"local_poses", [](auto& m) { m.local_poses._buffer[0].stamp_ns = m.stamp_ns + 1; }},
-      {"codec", [](auto& m) { m.codec = 3; }},
+      {"codec", [](auto& m) { m.codec = 4; }},
       {"lpc", [](auto& m) { m.lpc._length = 0; }},
       {"voxel_size_m", [](auto& m) { m.voxel_size_m = 0; }},
       {"camera", [](auto& m) { m.camera.width = 0; }},

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/registration/pairs.hpp"
+
 namespace liloc {
 namespace {
 
@@ -24,48 +26,18 @@ struct Normals {
   }
 };
 
-struct Side {
-  const Cloud& target;
-  const NearestGrid& nearest;
-  const Cloud& source;
-};
-
 Normals accumulate(const Side& side, const Pose& T, double distance_m, const RefineOptions& options) {
   Normals sum;
-  const Eigen::Isometry3f Tf = T.cast<float>();
-  const bool with_normals = side.source.has_normals() && side.target.has_normals();
-  const auto agreement = static_cast<float>(options.min_normal_agreement);
-  const auto limit = static_cast<float>(distance_m * distance_m);
-  const double width = 0.25 * limit;  // Geman-McClure: a pair at half the distance weighs a quarter
-  for (std::size_t i = 0; i < side.source.size(); ++i) {
-    const Eigen::Vector3f arm = Tf.linear() * side.source.points[i];
-    const Eigen::Vector3f p = arm + Tf.translation();
-    const std::int32_t j = side.nearest.nearest(p);
-    if (j == NearestGrid::kNone) continue;
-    const Eigen::Vector3f offset = p - side.target.points[static_cast<std::size_t>(j)];
-    const float squared = offset.squaredNorm();
-    if (squared > limit) continue;
-    const double root = width / (width + static_cast<double>(squared));
-    const double w = root * root;
-    if (with_normals) {
-      const Eigen::Vector3f& n_target = side.target.normals[static_cast<std::size_t>(j)];
-      const Eigen::Vector3f n_source = Tf.linear() * side.source.normals[i];
-      if (n_target.dot(n_source) < agreement) continue;
-      if (!options.point_to_point) {
-        const Eigen::Vector3f n = (n_target + n_source).normalized();
-        Vector6d jacobian;
-        jacobian << arm.cross(n).cast<double>(), n.cast<double>();
-        sum.add(jacobian, static_cast<double>(n.dot(offset)), w);
-        continue;
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3f n = Eigen::Vector3f::Unit(axis);
-      Vector6d jacobian;
-      jacobian << arm.cross(n).cast<double>(), n.cast<double>();
-      sum.add(jacobian, static_cast<double>(offset[axis]), w);
-    }
-  }
+  const bool to_plane = !options.point_to_point && side.source.has_normals() && side.target.has_normals();
+  for_each_pair(side, T, distance_m, options.min_normal_agreement,
+                [&](std::size_t, const Eigen::Vector3f& arm, const Eigen::Vector3f& normal,
+                    const Eigen::Vector3f& offset, double weight) {
+                  if (to_plane)
+                    return sum.add(jacobian_of(arm, normal), static_cast<double>(normal.dot(offset)), weight);
+                  for (int axis = 0; axis < 3; ++axis)
+                    sum.add(jacobian_of(arm, Eigen::Vector3f::Unit(axis)), static_cast<double>(offset[axis]),
+                            weight);
+                });
   return sum;
 }
 
@@ -150,10 +122,6 @@ Alignment refine(const Target& target, const Query& query, const Pose& T_target_
   result.pairs = sum.pairs;
   result.pair_share = query.medium.empty() ? 0.0 : sum.pairs / static_cast<double>(query.medium.size());
   if (sum.pairs >= 12 && sum.weight > 0) {
-    const double variance = std::max(sum.squared / sum.weight, 1e-6);
-    Matrix6d R = Matrix6d::Zero();
-    R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = result.T_target_source.linear();
-    result.information = R.transpose() * sum.H * R / variance;
     result.inlier_rmse_m = std::sqrt(sum.squared / sum.weight);
   }
   result.fitness = fit_of(target, query.cloud, result.T_target_source, options.fit_distance_m).fitness;

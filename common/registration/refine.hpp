@@ -17,8 +17,6 @@ struct RefineOptions {
 /// How well a pose fits. Where the pose itself is poor this is a graded result, not an error.
 struct Alignment {
   Pose T_target_source = Pose::Identity();
-  Matrix6d information =
-      Matrix6d::Zero();      ///< 1/(rad, m)^2 in the source's axes, noise of the residuals taken out
   double fitness = 0;        ///< share of source points with a target point within one voxel
   double inlier_rmse_m = 0;  ///< distance along the normal, over those
   int pairs = 0;

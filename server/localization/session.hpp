@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "server/localization/equality.hpp"
+#include "server/localization/pose_filter.hpp"
 #include "server/localization/tracks.hpp"
 
 namespace liloc {
@@ -19,8 +20,9 @@ struct VerifyOptions {
   double conclusive_margin = 0.45;    ///< of one spot alone: score over the runner-up's ...
   double conclusive_agree = 0.45;     ///< ... share of device points on seen surfaces ...
   double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
-  double locked_sd_rad = radians(2.0), locked_sd_m = 0.10;  ///< of map -> odom when it was just verified
-  double spot_sd_rad = radians(0.10), spot_sd_m = 0.005;    ///< of a well-observed spot, crowds and all
+  double verified_sd_rad = radians(2.0), verified_sd_m = 0.08;  ///< most, in any direction
+  double locked_sd_rad = radians(1.0), locked_sd_m = 0.05;      ///< least, to hold a refinement near its start
+  double prior_residual_sd_m = 0.05;                            ///< of a pair of it
   double step_sd_rad = radians(0.2),
          step_sd_m = 0.008;  ///< least growth between spots: calibration and clocks err too
   int research_every = 6;    ///< while tracking, every so many spots the whole room is searched
@@ -44,12 +46,12 @@ class Session {
   void answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   void start_segment(std::uint32_t segment);
   [[nodiscard]] bool conclusive(const std::vector<Hypothesis>& found) const;
+  [[nodiscard]] bool sure(const PoseEstimate& estimate) const;
   struct Decision {
     Reason reason;
-    Pose T_map_odom;
     Hypothesis here;
   };
-  [[nodiscard]] std::optional<Decision> decide(const Spot& spot, const std::vector<Hypothesis>& found) const;
+  [[nodiscard]] std::optional<Decision> decide(const std::vector<Hypothesis>& found) const;
   std::optional<Decision> search_room(const std::shared_ptr<const Spot>& spot, std::vector<Hypothesis>* found);
   bool follow(const SpotRequest& request, const Spot& spot, SpotReply* reply);
 
@@ -58,10 +60,10 @@ class Session {
   std::uint32_t segment_ = 0;
   bool started_ = false;
   Tracks tracks_{verify_.tracks};
-  std::deque<SpotPose> own_answers_;  ///< the last three spots' own best poses
-  std::optional<Pose> T_map_odom_;    ///< of the verified track
-  double sd_rad_ = 0, sd_m_ = 0;      ///< of it
-  bool followed_ = false;             ///< the newest spot bore the track out
+  std::deque<SpotPose> own_answers_;       ///< the last three spots' own best poses
+  std::optional<PoseEstimate> estimate_;   ///< at the newest spot, once verified
+  Pose T_odom_sensor_ = Pose::Identity();  ///< of that spot
+  bool followed_ = false;                  ///< the newest spot bore the track out
   double last_margin_ = 0;
   int weak_in_a_row_ = 0, spots_since_search_ = 0;
 };

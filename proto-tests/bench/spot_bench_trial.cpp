@@ -36,13 +36,19 @@ EngineOptions engine_options(const DeviceInfo& device) {
   return options;
 }
 
+LocalizerOptions localizer_options(const TrialOptions& options) {
+  LocalizerOptions localizer;
+  localizer.threads = options.threads;
+  return localizer;
+}
+
 class Trial {
  public:
   Trial(const Stage& stage, const TrialOptions& options)
       : stage_(stage),
         options_(options),
         cloud_(stage.site, {}),
-        localizer_(cloud_, {.threads = options.threads}),
+        localizer_(cloud_, localizer_options(options)),
         recent_(stage.site.global_lidars.size()) {
     for (const DeviceInfo& device : stage.devices)
       devices_.push_back(std::make_unique<Device>(engine_options(device)));

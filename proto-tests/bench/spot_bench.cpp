@@ -3,6 +3,8 @@
 //
 //   liloc_spot_bench --sites 100 [--first-seed 1] [--jobs 2] [--threads 1] [--csv rows.csv] [--no-gravity]
 //   liloc_spot_bench --recordings DIR...
+//   liloc_spot_bench --sites 100 --evidence rows.txt; liloc_spot_bench --sweep rows.txt   # thresholds, as
+//   Markdown
 //
 // The devices run the client's engine, so that requests are what a server gets.
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include <mutex>
 #include <thread>
 
+#include "proto-tests/bench/spot_bench_sweep.hpp"
 #include "proto-tests/bench/spot_bench_tables.hpp"
 #include "proto-tests/bench/spot_bench_trial.hpp"
 
@@ -24,7 +27,7 @@ struct Options {
   double seconds = 12;
   std::vector<std::string> recordings;
   bool verbose = false;
-  std::string csv;
+  std::string csv, evidence, sweep;
   TrialOptions trial;
 };
 
@@ -41,10 +44,10 @@ void print_rows(const std::vector<Row>& rows) {
 }
 
 /// All stages, `jobs` at a time; rows in the order of the stages. Error: the first that a stage met.
-Result<std::vector<Row>> run_stages(const Options& options) {
+Result<TrialResult> run_stages(const Options& options) {
   const std::size_t count =
       options.recordings.empty() ? static_cast<std::size_t>(options.sites) : options.recordings.size();
-  std::vector<Result<std::vector<Row>>> results(count);
+  std::vector<Result<TrialResult>> results(count);
   std::atomic<std::size_t> next{0};
   std::mutex printing;
   const auto work = [&] {
@@ -57,7 +60,7 @@ Result<std::vector<Row>> run_stages(const Options& options) {
         fmt::print(stderr, "site {}: {}\n", options.first_seed + i, results[i].error().message);
       } else if (options.verbose) {
         fmt::print("{}\n", name);
-        print_rows(*results[i]);
+        print_rows(results[i]->rows);
       }
     }
   };
@@ -65,31 +68,43 @@ Result<std::vector<Row>> run_stages(const Options& options) {
     std::vector<std::jthread> workers;
     for (int j = 0; j < options.jobs; ++j) workers.emplace_back(work);
   }
-  std::vector<Row> rows;
+  TrialResult all;
   for (auto& result : results) {
     if (!result) return tl::unexpected(result.error());
-    rows.insert(rows.end(), result->begin(), result->end());
+    all.rows.insert(all.rows.end(), result->rows.begin(), result->rows.end());
+    all.evidence.insert(all.evidence.end(), result->evidence.begin(), result->evidence.end());
   }
-  return rows;
+  return all;
+}
+
+int complain(const Error& error) {
+  fmt::print(stderr, "{}\n", error.message);
+  return 1;
 }
 
 int run(const Options& options) {
-  const auto rows = run_stages(options);
-  if (!rows) return 1;
+  if (!options.sweep.empty()) {
+    const auto evidence = read_evidence(options.sweep);
+    if (!evidence) return complain(evidence.error());
+    print_sweep(*evidence);
+    return 0;
+  }
+  const auto result = run_stages(options);
+  if (!result) return 1;
   const std::string what = options.recordings.empty()
                                ? fmt::format("{} sites from seed {}", options.sites, options.first_seed)
                                : fmt::format("{} recordings", options.recordings.size());
   fmt::print("{}, {} thread(s), {} job(s), gravity {}\n", what, options.trial.threads, options.jobs,
              options.trial.gravity ? "known" : "unknown");
-  print_success(*rows, true);
-  print_success(*rows, false);
-  print_by_site(*rows);
-  print_consistency(*rows);
-  if (options.csv.empty()) return 0;
-  if (const Status written = write_csv(options.csv, *rows); !written) {
-    fmt::print(stderr, "{}\n", written.error().message);
-    return 1;
-  }
+  print_success(result->rows, true);
+  print_success(result->rows, false);
+  print_by_site(result->rows);
+  print_consistency(result->rows);
+  if (!options.csv.empty())
+    if (const Status written = write_csv(options.csv, result->rows); !written) return complain(written.error());
+  if (!options.evidence.empty())
+    if (const Status written = write_evidence(options.evidence, result->evidence); !written)
+      return complain(written.error());
   return 0;
 }
 
@@ -114,10 +129,13 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   app.add_option("--csv", options.csv, "Write a row per spot");
+  app.add_option("--evidence", options.evidence, "Write what each decision rested on, for --sweep");
+  app.add_option("--sweep", options.sweep, "Read such a file and print what other thresholds would have done");
   app.add_flag("!--no-gravity", options.trial.gravity, "Requests do not say where up is");
   app.add_flag("--verbose", options.verbose, "Print every spot");
   try {
     app.parse(argc, argv);
+    options.trial.evidence = !options.evidence.empty();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }

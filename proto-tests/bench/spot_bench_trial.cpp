@@ -8,6 +8,8 @@
 #include "client/src/engine.hpp"
 #include "proto-tests/replay/truth.hpp"
 #include "server/localization/localizer.hpp"
+#include "server/localization/session.hpp"
+#include "server/localization/spot_solver.hpp"
 
 namespace liloc::bench {
 namespace {
@@ -24,7 +26,8 @@ struct Asked {
 struct Device {
   explicit Device(EngineOptions options) : engine(std::move(options)) {}
   Engine engine;
-  std::deque<Asked> held;  ///< not yet answered; oldest first
+  std::unique_ptr<Session> live, searching;  ///< where evidence is gathered
+  std::deque<Asked> held;                    ///< not yet answered; oldest first
 };
 
 EngineOptions engine_options(const DeviceInfo& device) {
@@ -42,25 +45,37 @@ LocalizerOptions localizer_options(const TrialOptions& options) {
   return localizer;
 }
 
+/// Thresholds that nothing passes.
+VerifyOptions never() {
+  VerifyOptions options;
+  options.conclusive_margin = 2;
+  options.spots = 1000;
+  return options;
+}
+
 class Trial {
  public:
   Trial(const Stage& stage, const TrialOptions& options)
       : stage_(stage),
         options_(options),
         cloud_(stage.site, {}),
-        localizer_(cloud_, localizer_options(options)),
+        server_options_(localizer_options(options)),
+        localizer_(cloud_, server_options_),
         recent_(stage.site.global_lidars.size()) {
-    for (const DeviceInfo& device : stage.devices)
+    for (const DeviceInfo& device : stage.devices) {
       devices_.push_back(std::make_unique<Device>(engine_options(device)));
+      devices_.back()->live = std::make_unique<Session>(server_options_);
+      devices_.back()->searching = std::make_unique<Session>(server_options_, never());
+    }
   }
 
   [[nodiscard]] Status take(sim::SimEvent event) {
     return std::visit([&](auto& payload) { return take(std::move(payload), event.at_ns); }, event.payload);
   }
 
-  std::vector<Row> finish() {
+  TrialResult finish() {
     answer_due(std::numeric_limits<StampNs>::max());
-    return std::move(rows_);
+    return std::move(result_);
   }
 
  private:
@@ -106,12 +121,32 @@ class Trial {
     const double overlap = overlap_of(asked, stage_.devices[device].camera);
     cloud_.prepare();  // which the server does beside its requests
     SpotRequest alone = asked.request;
-    alone.cold = true;
+    alone.cold = !options_.evidence;
     alone.extra.bytes.clear();
-    add_row(localizer_.locate(alone), true, overlap, asked);
-    const SpotReply reply = localizer_.locate(asked.request);
-    devices_[device]->engine.add_reply(reply);
+    Device& d = *devices_[device];
+    add_row(options_.evidence ? weighed(alone, *d.searching, false, overlap, asked) : localizer_.locate(alone),
+            true, overlap, asked);
+    const SpotReply reply = options_.evidence ? weighed(asked.request, *d.live, true, overlap, asked)
+                                              : localizer_.locate(asked.request);
+    d.engine.add_reply(reply);
     add_row(reply, false, overlap, asked);
+  }
+
+  /// The session's answer; what it rested on is kept.
+  SpotReply weighed(const SpotRequest& request, Session& session, bool live, double overlap,
+                    const Asked& asked) {
+    const auto snapshot = cloud_.nearest(request.match_stamp_ns());
+    if (!snapshot) return refusal(request, Reason::no_gpc, snapshot.error().message);
+    const auto spot = Spot::create(request, *snapshot, server_options_);
+    if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);
+    SpotReply reply = refusal(request, Reason::none, "");
+    session.answer(request, *spot, &reply);
+    EvidenceRow row = against_truth(session.evidence(), asked.T_map_sensor_true);
+    row.seed = stage_.seed;
+    row.live = live;
+    row.overlap = overlap;
+    result_.evidence.push_back(std::move(row));
+    return reply;
   }
 
   void add_row(SpotReply reply, bool cold, double overlap, const Asked& asked) {
@@ -121,7 +156,7 @@ class Trial {
     row.seed = stage_.seed;
     row.cold = cold;
     row.overlap = overlap;
-    rows_.push_back(std::move(row));
+    result_.rows.push_back(std::move(row));
   }
 
   [[nodiscard]] double overlap_of(const Asked& asked, const Camera& camera) const {
@@ -141,15 +176,16 @@ class Trial {
   const Stage& stage_;
   const TrialOptions options_;
   GlobalCloud cloud_;
+  const LocalizerOptions server_options_;
   Localizer localizer_;
   std::vector<std::unique_ptr<Device>> devices_;
   std::vector<std::deque<DepthImage>> recent_;  ///< per LiDAR, newest last
-  std::vector<Row> rows_;
+  TrialResult result_;
 };
 
 }  // namespace
 
-Result<std::vector<Row>> run_trial(Stage stage, const TrialOptions& options) {
+Result<TrialResult> run_trial(Stage stage, const TrialOptions& options) {
   Trial trial(stage, options);
   while (auto event = stage.next())
     if (const Status taken = trial.take(std::move(*event)); !taken) return tl::unexpected(taken.error());

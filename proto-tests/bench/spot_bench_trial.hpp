@@ -1,18 +1,25 @@
 #pragma once
 // Devices' engines and the server's localizer at one site, in one thread and without DDS.
+#include "proto-tests/bench/spot_bench_evidence.hpp"
 #include "proto-tests/bench/spot_bench_row.hpp"
 #include "proto-tests/bench/spot_bench_sites.hpp"
 
 namespace liloc::bench {
 
 struct TrialOptions {
-  int threads = 1;      ///< per request
-  bool gravity = true;  ///< whether requests say where up is
+  int threads = 1;        ///< per request
+  bool gravity = true;    ///< whether requests say where up is
+  bool evidence = false;  ///< gather it; cold answers then come from sessions that never believe what they find
+};
+
+struct TrialResult {
+  std::vector<Row> rows;
+  std::vector<EvidenceRow> evidence;
 };
 
 /// Runs a site to its end. Each request of a device is answered twice: cold, on the frame alone, and with
 /// history and surroundings, as a server answers it. Deterministic but for the latencies. Errors: those of the
 /// site's frames.
-[[nodiscard]] Result<std::vector<Row>> run_trial(Stage stage, const TrialOptions& options);
+[[nodiscard]] Result<TrialResult> run_trial(Stage stage, const TrialOptions& options);
 
 }  // namespace liloc::bench

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/registration/pose_covariance.hpp"
 
@@ -45,18 +46,6 @@ void Session::start_segment(std::uint32_t segment) {
   followed_ = false;
 }
 
-bool Session::sure(const PoseEstimate& estimate) const {
-  return estimate.sd_rad() <= verify_.verified_sd_rad && estimate.sd_m() <= verify_.verified_sd_m;
-}
-
-bool Session::conclusive(const std::vector<Hypothesis>& found) const {
-  if (found.empty()) return false;
-  const Judgement& best = found.front().judgement;
-  return fits(found.front(), verify_.tracks) && best.agree >= verify_.conclusive_agree &&
-         best.overlap() >= verify_.conclusive_overlap && best.map_agree >= verify_.conclusive_overlap &&
-         margin_of(found) >= verify_.conclusive_margin;
-}
-
 void Session::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
   if (request.cold) return answer_cold(spot, reply);
   if (!started_ || request.odom_segment != segment_) start_segment(request.odom_segment);
@@ -65,69 +54,78 @@ void Session::answer(const SpotRequest& request, const std::shared_ptr<const Spo
   answer_searching(spot, reply);
 }
 
-void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) const {
+void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
   const auto found = search(*spot, options_);
   if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
-  const PoseEstimate estimate = estimate_of(*spot, found.front());
-  report(found.front(), estimate, margin_of(found), reply);
-  if (options_.verify_or_default() == Verify::tracks && conclusive(found) && sure(estimate))
+  evidence_ = {};
+  evidence_.own = found.front();
+  evidence_.own_estimate = estimate_of(*spot, found.front());
+  evidence_.margin = margin_of(found);
+  report(found.front(), evidence_.own_estimate, evidence_.margin, reply);
+  if (options_.verify_or_default() == Verify::tracks && conclusive(evidence_, verify_))
     return conclude(SpotStatus::verified, Reason::conclusive, reply);
   conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
 }
 
-/// Verified or why not yet: the three equality checks among the spots' own answers, and a lead over every
-/// rival.
-std::optional<Session::Decision> Session::decide(const std::vector<Hypothesis>& found) const {
-  if (!followed_ && conclusive(found))  // one spot never outvotes a track that still holds
-    return Decision{Reason::conclusive, found.front()};
+/// All that the newest spot and the ones before it say of the best track: its lead over every rival, and
+/// whether the paper's three checks tie it to the spots' own answers.
+Evidence Session::gathered(const Spot& spot, const std::vector<Hypothesis>& found) const {
   const Track& best = tracks_.best_first().front();
-  const auto spots = static_cast<double>(tracks_.spots());
-  if (best.supports() < verify_.spots || !best.fits.back() || own_answers_.size() < 3) return std::nullopt;
-  if (tracks_.lead() < verify_.lead_per_spot * spots) return std::nullopt;
+  Evidence e;
+  e.own = found.front();
+  e.own_estimate = estimate_of(spot, found.front());
+  e.margin = margin_of(found);
+  e.best = best.latest;
+  e.best_estimate = estimate_of(spot, best.latest);
+  e.stayed = best.fits.back();
+  e.supports = best.supports();
+  e.lead_per_spot = tracks_.lead() / static_cast<double>(tracks_.spots());
+  if (own_answers_.size() < 3) return e;
   const Verification v = verify({own_answers_[0], own_answers_[1], own_answers_[2]}, verify_.equality);
-  if (v.verdict == Verdict::none) return std::nullopt;
   const SpotPose newest{v.T_map_sensor[2], own_answers_[2].T_odom_sensor};
   const SpotPose tracked{best.T_map_odom * newest.T_odom_sensor, newest.T_odom_sensor};
-  if (!equal(tracked, newest, verify_.equality)) return std::nullopt;
-  return Decision{v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed, best.latest};
+  if (v.verdict != Verdict::none && equal(tracked, newest, verify_.equality))
+    e.chain = v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed;
+  return e;
 }
 
 /// Searches the whole room from this spot and lets all tracks weigh it; locks on and returns why once that is
-/// safe.
-std::optional<Session::Decision> Session::search_room(const std::shared_ptr<const Spot>& spot,
-                                                      std::vector<Hypothesis>* found) {
-  *found = search(*spot, options_);
+/// safe. `evidence_` tells what was found.
+std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& spot) {
+  const std::vector<Hypothesis> found = search(*spot, options_);
   spots_since_search_ = 0;
-  if (found->empty()) return std::nullopt;
-  tracks_.add(spot, *found);
-  own_answers_.push_back({found->front().T_map_sensor(), spot->T_odom_sensor()});
+  evidence_ = {};
+  if (found.empty()) return std::nullopt;
+  tracks_.add(spot, found);
+  own_answers_.push_back({found.front().T_map_sensor(), spot->T_odom_sensor()});
   if (own_answers_.size() > 3) own_answers_.pop_front();
-  last_margin_ = margin_of(*found);
-  const auto decision = decide(*found);
-  if (!decision) return std::nullopt;
-  const PoseEstimate here = estimate_of(*spot, decision->here);
-  if (!sure(here)) return std::nullopt;
+  evidence_ = gathered(*spot, found);
+  last_margin_ = evidence_.margin;
+  const bool alone = !followed_ && conclusive(evidence_, verify_);  // never outvotes a track that still holds
+  if (alone) evidence_.best = evidence_.own, evidence_.best_estimate = evidence_.own_estimate;
+  const auto why = alone ? std::optional(Reason::conclusive) : confirmed(evidence_, verify_);
+  if (!why) return why;
   // A track that holds has more behind it than this spot's own search; elsewhere, the search is right.
-  const bool known = followed_ && same_place(here.T_map_sensor, estimate_->T_map_sensor);
-  if (!known) estimate_ = here;
+  const bool known = followed_ && same_place(evidence_.best_estimate.T_map_sensor, estimate_->T_map_sensor);
+  if (!known) estimate_ = evidence_.best_estimate;
   T_odom_sensor_ = spot->T_odom_sensor();
   weak_in_a_row_ = 0;
-  return decision;
+  return why;
 }
 
 void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
-  std::vector<Hypothesis> found;
-  const auto decision = search_room(spot, &found);
-  if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
-  const Track& best = tracks_.best_first().front();
-  const Hypothesis& here = decision ? decision->here : best.fits.back() ? best.latest : found.front();
-  report(here, estimate_of(*spot, here), last_margin_, reply);
-  if (decision) {
+  const auto why = search_room(spot);
+  if (!evidence_.best) return conclude(SpotStatus::refused, Reason::not_found, reply);
+  if (why || evidence_.stayed)
+    report(*evidence_.best, evidence_.best_estimate, last_margin_, reply);
+  else
+    report(*evidence_.own, evidence_.own_estimate, last_margin_, reply);
+  if (why) {
     reply->T_map_odom = estimate_->T_map_sensor * T_odom_sensor_.inverse();
-    return conclude(SpotStatus::verified, decision->reason, reply);
+    return conclude(SpotStatus::verified, *why, reply);
   }
   const bool few = tracks_.spots() < static_cast<std::size_t>(verify_.spots);
-  const bool led = tracks_.lead() >= verify_.lead_per_spot * static_cast<double>(tracks_.spots());
+  const bool led = evidence_.lead_per_spot >= verify_.lead_per_spot;
   conclude(SpotStatus::provisional,
            few   ? Reason::awaiting_spots
            : led ? Reason::inconsistent
@@ -147,9 +145,12 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
   const PosePrior prior{predicted, std::max(estimate_->sd_rad(), verify_.locked_sd_rad),
                         std::max(estimate_->sd_m(), verify_.locked_sd_m), verify_.prior_residual_sd_m};
   const Hypothesis here = refine_and_judge(spot.problem(), predicted, &prior);
-  const bool good =
-      same_place(here.T_map_sensor(), predicted, verify_.tracks.gate) && fits(here, verify_.tracks);
+  evidence_ = {};
+  evidence_.best = here;
+  evidence_.stayed = same_place(here.T_map_sensor(), predicted, verify_.tracks.gate);
+  const bool good = holds(evidence_, verify_, /*unsure=*/true);
   if (good) estimate_ = fused(*estimate_, estimate_of(spot, here));
+  evidence_.best_estimate = *estimate_;
   report(here, *estimate_, last_margin_, reply);
   return good;
 }
@@ -159,16 +160,18 @@ void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<
   const bool good = follow(request, *spot, reply);
   followed_ = good;
   weak_in_a_row_ = good ? 0 : weak_in_a_row_ + 1;
-  const bool verified = good && sure(*estimate_);
+  const bool verified = holds(evidence_, verify_);
   conclude(verified ? SpotStatus::verified : SpotStatus::provisional,
            verified ? Reason::confirmed : Reason::weak, reply);
   // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that
   // was lifted and put elsewhere must not be believed for long.
   if (++spots_since_search_ >= verify_.research_every || weak_in_a_row_ >= 2) {
-    std::vector<Hypothesis> found;
-    if (const auto decision = search_room(spot, &found)) {
-      report(decision->here, *estimate_, last_margin_, reply);
-      conclude(SpotStatus::verified, decision->reason, reply);
+    const Evidence followed = std::exchange(evidence_, {});
+    if (const auto why = search_room(spot)) {
+      report(*evidence_.best, *estimate_, last_margin_, reply);
+      conclude(SpotStatus::verified, *why, reply);
+    } else {
+      evidence_ = followed;
     }
   }
   if (reply->verified()) reply->T_map_odom = estimate_->T_map_sensor * T_odom_sensor_.inverse();

@@ -1,0 +1,106 @@
+#include "proto-tests/bench/spot_bench_sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+
+namespace liloc::bench {
+namespace {
+
+void print_heading(const char* title, const char* threshold) {
+  fmt::print(
+      "\n**{}**\n\n| {} | spots | verified | wrong of them | refused, overlap over 0.3 "
+      "|\n|---|---|---|---|---|\n",
+      title, threshold);
+}
+
+/// `verdict`: empty where the row has no part; otherwise whether it would be verified, and was right.
+struct Outcome {
+  bool verified, right;
+};
+using Judge = std::function<std::optional<Outcome>(const EvidenceRow&)>;
+
+void print_line(const std::string& name, const std::vector<EvidenceRow>& rows, const Judge& judge) {
+  std::size_t spots = 0, verified = 0, wrong = 0, seen = 0, refused = 0;
+  for (const EvidenceRow& row : rows) {
+    const auto verdict = judge(row);
+    if (!verdict) continue;
+    ++spots;
+    verified += verdict->verified;
+    wrong += verdict->verified && !verdict->right;
+    seen += row.overlap >= 0.3;
+    refused += row.overlap >= 0.3 && !verdict->verified;
+  }
+  const auto share = [](std::size_t part, std::size_t all) {
+    return all == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
+  };
+  fmt::print("| {} | {} | {} | {} ({:.2f} %) | {:.1f} % |\n", name, spots, verified, wrong,
+             share(wrong, verified), share(refused, seen));
+}
+
+std::string marked(const std::string& name, bool is_default) {
+  return is_default ? fmt::format("**{}**", name) : name;
+}
+
+void sweep_cold(const std::vector<EvidenceRow>& rows) {
+  print_heading("One spot alone", "margin over the runner-up, share that agrees");
+  const VerifyOptions standard;
+  for (const double margin : {0.15, 0.3, 0.45, 0.6, 0.75})
+    for (const double agree : {0.3, 0.45, 0.6}) {
+      VerifyOptions o;
+      o.conclusive_margin = margin;
+      o.conclusive_agree = agree;
+      print_line(marked(fmt::format("{:.2f}, {:.2f}", margin, agree),
+                        margin == standard.conclusive_margin && agree == standard.conclusive_agree),
+                 rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
+                   if (r.live || !r.evidence.own) return std::nullopt;
+                   return Outcome{conclusive(r.evidence, o), r.own_right};
+                 });
+    }
+}
+
+void sweep_searching(const std::vector<EvidenceRow>& rows) {
+  print_heading("Several spots, not yet located", "lead per spot, spots that fit");
+  const VerifyOptions standard;
+  for (const double lead : {0.0, 0.04, 0.08, 0.12, 0.2, 0.3})
+    for (const int spots : {3, 4, 5}) {
+      VerifyOptions o;
+      o.lead_per_spot = lead;
+      o.spots = spots;
+      print_line(marked(fmt::format("{:.2f}, {}", lead, spots),
+                        lead == standard.lead_per_spot && spots == standard.spots),
+                 rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
+                   if (r.live || !r.evidence.best) return std::nullopt;
+                   return Outcome{confirmed(r.evidence, o).has_value(), r.best_right};
+                 });
+    }
+}
+
+void sweep_following(const std::vector<EvidenceRow>& rows) {
+  print_heading("Following a verified pose",
+                "ceiling and device points that agree, largest standard deviation");
+  const VerifyOptions standard;
+  for (const double agree : {0.90, 0.93, 0.95, 0.97, 0.98})
+    for (const double sd_m : {0.02, 0.04, 0.08}) {
+      VerifyOptions o;
+      o.tracks.fits_map_agree = agree;
+      o.tracks.fits_overlap = std::max(agree, standard.tracks.fits_overlap);
+      o.verified_sd_m = sd_m;
+      print_line(marked(fmt::format("{:.2f}, {:.2f} m", agree, sd_m),
+                        agree == standard.tracks.fits_map_agree && sd_m == standard.verified_sd_m),
+                 rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
+                   if (!r.live || !r.followed() || !r.evidence.best) return std::nullopt;
+                   return Outcome{holds(r.evidence, o), r.best_right};
+                 });
+    }
+}
+
+}  // namespace
+
+void print_sweep(const std::vector<EvidenceRow>& rows) {
+  sweep_cold(rows);
+  sweep_searching(rows);
+  sweep_following(rows);
+}
+
+}  // namespace liloc::bench

@@ -1,0 +1,30 @@
+#include "server/localization/verification.hpp"
+
+namespace liloc {
+namespace {
+
+bool sure(const PoseEstimate& estimate, const VerifyOptions& options) {
+  return estimate.sd_rad() <= options.verified_sd_rad && estimate.sd_m() <= options.verified_sd_m;
+}
+
+}  // namespace
+
+bool conclusive(const Evidence& evidence, const VerifyOptions& options) {
+  if (!evidence.own || !fits(*evidence.own, options.tracks)) return false;
+  const Judgement& judgement = evidence.own->judgement;
+  return judgement.agree >= options.conclusive_agree && judgement.overlap() >= options.conclusive_overlap &&
+         judgement.map_agree >= options.conclusive_overlap && evidence.margin >= options.conclusive_margin &&
+         sure(evidence.own_estimate, options);
+}
+
+std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options) {
+  const bool led = evidence.supports >= options.spots && evidence.lead_per_spot >= options.lead_per_spot;
+  return led && holds(evidence, options) ? evidence.chain : std::nullopt;
+}
+
+bool holds(const Evidence& evidence, const VerifyOptions& options, bool unsure) {
+  return evidence.best && evidence.stayed && fits(*evidence.best, options.tracks) &&
+         (unsure || sure(evidence.best_estimate, options));
+}
+
+}  // namespace liloc

@@ -1,0 +1,48 @@
+#pragma once
+// When an answer counts as verified: what is known of it, and the thresholds it is held against.
+#include <optional>
+
+#include "server/localization/equality.hpp"
+#include "server/localization/pose_filter.hpp"
+#include "server/localization/tracks.hpp"
+
+namespace liloc {
+
+/// When an answer counts as verified. Scores are points of `Judgement::score`.
+struct VerifyOptions {
+  EqualityThresholds equality;
+  TrackOptions tracks;
+  int spots = 3;                      ///< the paper's number
+  double lead_per_spot = 0.08;        ///< of the best track over the second, over the spots in memory
+  double conclusive_margin = 0.45;    ///< of one spot alone: score over the runner-up's ...
+  double conclusive_agree = 0.45;     ///< ... share of device points on seen surfaces ...
+  double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
+  double verified_sd_rad = radians(2.0), verified_sd_m = 0.08;  ///< most, in any direction
+  double locked_sd_rad = radians(1.0), locked_sd_m = 0.05;      ///< least, to hold a refinement near its start
+  double prior_residual_sd_m = 0.05;                            ///< of a pair of it
+  double step_sd_rad = radians(0.2),
+         step_sd_m = 0.008;  ///< least growth between spots: calibration and clocks err too
+  int research_every = 6;    ///< while tracking, every so many spots the whole room is searched
+};
+
+/// What a decision rests on; kept, so that other thresholds can be tried on it without another search.
+struct Evidence {
+  std::optional<Hypothesis> own;  ///< the spot's own best, where the room was searched
+  PoseEstimate own_estimate;
+  double margin = 0;               ///< of it over its own runner-up
+  std::optional<Hypothesis> best;  ///< at this spot, of the best track or of the pose that was followed
+  PoseEstimate best_estimate;
+  bool stayed = false;          ///< whether that refinement stayed with its prediction
+  int supports = 0;             ///< spots in memory that fit the track, this one among them
+  double lead_per_spot = 0;     ///< of it over the second, in points of score
+  std::optional<Reason> chain;  ///< how the paper's checks tie it to the spots' own answers, where they do
+};
+
+/// Whether one spot decides alone.
+[[nodiscard]] bool conclusive(const Evidence& evidence, const VerifyOptions& options);
+/// Whether several spots decide: confirmed or corrected.
+[[nodiscard]] std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options);
+/// Whether a pose that was followed from a verified one still holds. `unsure` allows a wide covariance.
+[[nodiscard]] bool holds(const Evidence& evidence, const VerifyOptions& options, bool unsure = false);
+
+}  // namespace liloc

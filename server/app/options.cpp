@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "server/app/site_state.hpp"
+
 namespace liloc {
 namespace {
 
 struct Raw {
-  std::string method = "liloc", verify, icp;
+  std::string method = "liloc", verify, icp, state;
   int hold_ms = 100;
 };
 
@@ -16,6 +18,9 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   app.set_config("--config", "", "Read options from this file (TOML: name = value)");
   app.add_option("--site", options.site_file, "Site description: the ceiling LiDARs and where they hang")
       ->required();
+  app.add_option(
+      "--state", raw.state,
+      "File of what is learned of the site, or none; else beside the site: x/site.json, x/site.state.json");
 
   auto* network = app.add_option_group("network");
   network->add_option("--domain", options.seat.domain, "DDS domain, 0..230")->capture_default_str();
@@ -97,6 +102,8 @@ Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
   const auto method = method_from(raw.method);
   if (!method) return tl::unexpected(method.error());
   options.localizer.method = *method;
+  if (raw.state != "none")
+    options.state_file = raw.state.empty() ? state_file_of(options.site_file) : raw.state;
   if (const auto set = set_variants(raw, options.localizer); !set) return tl::unexpected(set.error());
   options.service.hold = std::chrono::milliseconds(raw.hold_ms);
   options.localizer.server_id = options.service.server_id;

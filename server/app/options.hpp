@@ -11,6 +11,7 @@ namespace liloc {
 
 struct ServerOptions {
   std::string site_file;
+  std::string state_file;  ///< what the server learns of the site; empty: kept in memory alone
   wire::DomainOptions seat;
   LocalizerOptions localizer;
   ServiceOptions service;

@@ -4,11 +4,13 @@
 #include <mutex>
 
 #include "common/base/log.hpp"
+#include "server/app/site_state.hpp"
 
 namespace liloc {
 namespace {
 
 constexpr auto kPreparePeriod = std::chrono::milliseconds(200);
+constexpr auto kSavePeriod = std::chrono::minutes(1);
 
 StampNs wall_clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -20,8 +22,14 @@ StampNs wall_clock_ns() {
 
 Server::Server(const ServerOptions& options, Site site)
     : server_id_(options.service.server_id),
+      state_file_(options.state_file),
+      voxel_size_m_(options.localizer.voxel_size_m),
       global_cloud_(std::move(site), global_cloud_options_for(options.localizer)),
-      localizer_(global_cloud_, options.localizer) {}
+      localizer_(
+          global_cloud_, options.localizer,
+          options.state_file.empty() ? CellBounds{} : open_site_state(options.state_file, voxel_size_m_)) {
+  saved_ = localizer_.learned();
+}
 
 Server::~Server() {
   stop();
@@ -75,8 +83,7 @@ Status Server::open_streams(const ServerOptions& options) {
   backend.forget = [this](const std::string& client_id) { localizer_.forget(client_id); };
   // A LiDAR whose last frame still counts for the stamp need not show a newer one: people move in between,
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
-  const StampNs match_ns = GlobalCloudOptions{}.match_ns;
-  backend.ready = [this, match_ns](StampNs stamp_ns) { return ingest_->seen(stamp_ns - match_ns); };
+  backend.ready = [this](StampNs stamp_ns) { return ingest_->seen(stamp_ns - GlobalCloudOptions{}.match_ns); };
   backend.ceiling_now = [this](std::chrono::steady_clock::time_point at) { return ingest_->ceiling_now(at); };
   auto service = Service::create(*dispatcher_, options.service, std::move(backend));
   if (!service) return tl::unexpected(service.error());
@@ -89,10 +96,24 @@ void Server::keep_prepared(const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
+  auto save_at = std::chrono::steady_clock::now() + kSavePeriod;
   while (!stop.stop_requested()) {
     if (service_->clients() > 0) global_cloud_.prepare();
+    if (std::chrono::steady_clock::now() >= save_at) {
+      save_learned();
+      save_at += kSavePeriod;
+    }
     wake.wait_for(lock, stop, kPreparePeriod, [] { return false; });
   }
+}
+
+/// At most once a minute, and at the end; only when something was learned.
+void Server::save_learned() {
+  auto learned = localizer_.learned();
+  if (state_file_.empty() || learned == saved_) return;
+  if (const Status written = write_site_state(state_file_, voxel_size_m_, *learned); !written)
+    log::warning("{}; or name another with --state", written.error().message);
+  saved_ = std::move(learned);
 }
 
 void Server::stop() {
@@ -100,6 +121,7 @@ void Server::stop() {
   if (preparer_.joinable()) preparer_.join();
   if (service_) service_->stop();
   if (dispatcher_) dispatcher_->stop();
+  save_learned();
 }
 
 wire::ServerStatus Server::status() const {

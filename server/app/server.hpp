@@ -29,9 +29,13 @@ class Server {
   [[nodiscard]] Status open_streams(const ServerOptions& options);
   void log_status() const;
   void keep_prepared(const std::stop_token& stop);
+  void save_learned();
 
   const std::string server_id_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const std::string state_file_;
+  const double voxel_size_m_;
+  std::shared_ptr<const CellBounds> saved_;  ///< as the state file has it; of the preparer, then of `stop`
   GlobalCloud global_cloud_;
   Localizer localizer_;
   std::optional<wire::Participant> participant_;  // all below live on it

@@ -31,8 +31,10 @@ void note_gravity(const SpotRequest& request, const Snapshot& snapshot, SpotRepl
 struct Localizer::Impl {
   GlobalCloud& global_cloud;
   const LocalizerOptions options;
-  std::mutex mutex;
+  std::shared_ptr<const CellBounds> learned;
+  mutable std::mutex mutex;
   std::map<std::string, std::shared_ptr<Session>> sessions;
+  std::map<std::string, Pose> last_learned;        ///< per client; a device that stands still teaches once
   std::shared_ptr<const Snapshot> first_snapshot;  ///< static_noopt: the room as it was at the start
 
   std::shared_ptr<Session> session(const std::string& client_id) {
@@ -55,18 +57,41 @@ struct Localizer::Impl {
     const std::scoped_lock in_turn(held->mutex);
     const auto room = snapshot(request.match_stamp_ns());
     if (!room) return refusal(request, Reason::no_gpc, room.error().message);
-    const auto spot = Spot::create(request, *room, options);
+    const auto spot = Spot::create(request, *room, options, bounds());
     if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);
     SpotReply reply = refusal(request, Reason::none, "");
     reply.gpc_stamp_ns = (*spot)->gpc_stamp_ns();
     held->answer(request, *spot, &reply);
     note_gravity(request, **room, &reply);
+    learn(**spot, reply);
     return reply;
+  }
+
+  std::shared_ptr<const CellBounds> bounds() const {
+    const std::scoped_lock lock(mutex);
+    return learned;
+  }
+
+  void learn(const Spot& spot, const SpotReply& reply) {
+    if (!reply.verified()) return;
+    const std::scoped_lock lock(mutex);
+    const auto [last, first] = last_learned.try_emplace(reply.client_id, *reply.T_map_sensor);
+    if (!first && same_place(last->second, *reply.T_map_sensor)) return;
+    last->second = *reply.T_map_sensor;
+    auto more = std::make_shared<CellBounds>(*learned);
+    more->learn(spot.middle_at(*reply.T_map_sensor), reply.fitness);
+    learned = std::move(more);
   }
 };
 
-Localizer::Localizer(GlobalCloud& global_cloud, LocalizerOptions options)
-    : impl_(new Impl{global_cloud, std::move(options), {}, {}, {}}) {}
+Localizer::Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBounds learned)
+    : impl_(new Impl{global_cloud,
+                     std::move(options),
+                     std::make_shared<const CellBounds>(std::move(learned)),
+                     {},
+                     {},
+                     {},
+                     {}}) {}
 
 Localizer::~Localizer() = default;
 
@@ -88,6 +113,11 @@ SpotReply Localizer::locate(const SpotRequest& request) {
 void Localizer::forget(const std::string& client_id) {
   const std::scoped_lock lock(impl_->mutex);
   impl_->sessions.erase(client_id);
+  impl_->last_learned.erase(client_id);
+}
+
+std::shared_ptr<const CellBounds> Localizer::learned() const {
+  return impl_->bounds();
 }
 
 }  // namespace liloc

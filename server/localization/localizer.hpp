@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/protocol/spot.hpp"
+#include "common/registration/cell_bounds.hpp"
 #include "server/global_cloud/global_cloud.hpp"
 
 namespace liloc {
@@ -25,8 +26,8 @@ enum class Icp { point, plane };
 
 struct LocalizerOptions {
   Method method = Method::liloc;
-  std::optional<Verify> verify;  ///< empty: the method's own
-  std::optional<Icp> icp;        ///< empty: the method's own
+  std::optional<Verify> verify = std::nullopt;  ///< empty: the method's own
+  std::optional<Icp> icp = std::nullopt;        ///< empty: the method's own
   double voxel_size_m = 0.05;
   double sampling = 0.5;   ///< share of points with features that RANSAC uses (paper, section 5.2)
   std::uint64_t seed = 1;  ///< all randomness comes from it, the client id and the request's seq
@@ -45,7 +46,8 @@ struct LocalizerOptions {
 /// Thread-safe: workers call `locate` side by side; requests of one client are answered in turn.
 class Localizer {
  public:
-  Localizer(GlobalCloud& global_cloud, LocalizerOptions options);
+  /// `learned`: the bounds that an earlier run left.
+  Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBounds learned = {});
   ~Localizer();
   Localizer(const Localizer&) = delete;
   Localizer& operator=(const Localizer&) = delete;
@@ -54,6 +56,8 @@ class Localizer {
   [[nodiscard]] SpotReply locate(const SpotRequest& request);
   /// Forgets what is known of a client, e.g. when it has left.
   void forget(const std::string& client_id);
+  /// What verified answers have taught so far. A new object whenever there was something to learn.
+  [[nodiscard]] std::shared_ptr<const CellBounds> learned() const;
 
  private:
   struct Impl;

@@ -29,7 +29,8 @@ std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypo
   return a;
 }
 
-/// The paper's own spot localization: (grid-)RANSAC, ICP, best fitness wins.
+/// The paper's own spot localization: (grid-)RANSAC, ICP, best fitness wins. Its grid drops what lies outside
+/// of the cell's bounds.
 std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions& options) {
   FeatureSearchOptions features;
   features.grid = options.method == Method::paper || options.method == Method::dynamic_nover;
@@ -39,6 +40,7 @@ std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions
     if (found.size() == spot.problem().judging.refine_most) break;
     found.push_back(refine_and_judge(spot.problem(), c.T_map_sensor));
   }
+  if (features.grid) std::erase_if(found, [&](const Hypothesis& h) { return !spot.plausible(h); });
   std::stable_sort(found.begin(), found.end(), [](const Hypothesis& a, const Hypothesis& b) {
     return a.alignment.fitness > b.alignment.fitness;
   });
@@ -49,11 +51,13 @@ std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions
 
 Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
                                                  std::shared_ptr<const Snapshot> snapshot,
-                                                 const LocalizerOptions& options) {
+                                                 const LocalizerOptions& options,
+                                                 std::shared_ptr<const CellBounds> bounds) {
   const auto cloud = decode(request.lpc);
   if (!cloud) return tl::unexpected(cloud.error());
   auto spot = std::make_shared<Spot>();
   spot->snapshot_ = std::move(snapshot);
+  spot->bounds_ = std::move(bounds);
   spot->T_odom_sensor_ = request.T_odom_sensor;
   Cloud extra;
   if (!request.extra.bytes.empty())
@@ -62,6 +66,8 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
   const double fewest = kLeastSurface_m2 / (options.voxel_size_m * options.voxel_size_m);
   if (static_cast<double>(spot->query_.cloud.size()) < fewest)
     return fail("the LPC has {} usable points; at least {:.0f} are needed", spot->query_.cloud.size(), fewest);
+  for (const auto& p : spot->query_.sparse.points)
+    spot->middle_sensor_ += p.cast<double>() / static_cast<double>(spot->query_.sparse.size());
   Spot* raw = spot.get();
   spot->problem_.emplace(SpotProblem{
       spot->snapshot_->target(), spot->query_, request.up_sensor, spot->snapshot_->room()->ups_map(),
@@ -76,6 +82,10 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
       options.seed * 7919 + request.seq, options.threads, judge_options_for(options.voxel_size_m)});
   spot->problem_->judging.refine.point_to_point = options.icp_or_default() == Icp::point;
   return spot;
+}
+
+bool Spot::plausible(const Hypothesis& hypothesis) const {
+  return bounds_->plausible(middle_at(hypothesis.T_map_sensor()), hypothesis.alignment.fitness);
 }
 
 double margin_of(const std::vector<Hypothesis>& hypotheses) {

@@ -14,19 +14,28 @@ namespace liloc {
 /// A spot to be solved: owns what its problem refers to, so that later spots can look back at it.
 class Spot {
  public:
-  /// Error: the LPC cannot be decoded or has too few points.
+  /// `bounds`: what is known of right registrations. Error: the LPC cannot be decoded or has too few points.
   static Result<std::shared_ptr<const Spot>> create(const SpotRequest& request,
                                                     std::shared_ptr<const Snapshot> snapshot,
-                                                    const LocalizerOptions& options);
+                                                    const LocalizerOptions& options,
+                                                    std::shared_ptr<const CellBounds> bounds);
 
   [[nodiscard]] const SpotProblem& problem() const { return *problem_; }
   [[nodiscard]] const Query& query() const { return query_; }
   [[nodiscard]] StampNs gpc_stamp_ns() const { return snapshot_->stamp_ns(); }
   [[nodiscard]] const Pose& T_odom_sensor() const { return T_odom_sensor_; }
+  /// The middle of the device's cloud if the device were there, map frame.
+  [[nodiscard]] Eigen::Vector3d middle_at(const Pose& T_map_sensor) const {
+    return T_map_sensor * middle_sensor_;
+  }
+  /// Whether right registrations at that place had such a fitness, as far as is known.
+  [[nodiscard]] bool plausible(const Hypothesis& hypothesis) const;
 
  private:
+  std::shared_ptr<const CellBounds> bounds_;
   std::shared_ptr<const Snapshot> snapshot_;
   Query query_;
+  Eigen::Vector3d middle_sensor_ = Eigen::Vector3d::Zero();
   Pose T_odom_sensor_ = Pose::Identity();
   mutable std::once_flag described_once_;
   mutable Described described_;

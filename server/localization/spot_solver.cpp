@@ -85,7 +85,7 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
 }
 
 bool Spot::plausible(const Hypothesis& hypothesis) const {
-  return bounds_->plausible(middle_at(hypothesis.T_map_sensor()), hypothesis.alignment.fitness);
+  return !bounds_ || bounds_->plausible(middle_at(hypothesis.T_map_sensor()), hypothesis.alignment.fitness);
 }
 
 double margin_of(const std::vector<Hypothesis>& hypotheses) {

@@ -14,11 +14,12 @@ namespace liloc {
 /// A spot to be solved: owns what its problem refers to, so that later spots can look back at it.
 class Spot {
  public:
-  /// `bounds`: what is known of right registrations. Error: the LPC cannot be decoded or has too few points.
+  /// `bounds`: what is known of right registrations, if anything is. Error: the LPC cannot be decoded or has
+  /// too few points.
   static Result<std::shared_ptr<const Spot>> create(const SpotRequest& request,
                                                     std::shared_ptr<const Snapshot> snapshot,
                                                     const LocalizerOptions& options,
-                                                    std::shared_ptr<const CellBounds> bounds);
+                                                    std::shared_ptr<const CellBounds> bounds = nullptr);
 
   [[nodiscard]] const SpotProblem& problem() const { return *problem_; }
   [[nodiscard]] const Query& query() const { return query_; }

@@ -60,6 +60,10 @@ void declare_values(py::module_& module) {
       .def_readonly("frames_skipped", &Stats::frames_skipped)
       .def_readonly("odometry_refused", &Stats::odometry_refused)
       .def_readonly("cpu_s", &Stats::cpu_s)
+      .def_readonly("clock_offset_ms", &Stats::clock_offset_ms)
+      .def_readonly("clock_round_trip_ms", &Stats::clock_round_trip_ms)
+      .def_readonly("clock_good", &Stats::clock_good)
+      .def_readonly("clock_jumps", &Stats::clock_jumps)
       .def_readonly("problem", &Stats::problem);
 }
 
@@ -108,7 +112,7 @@ void declare_client(py::module_& module) {
                        double voxel_size_m, int interval_ms, int reply_timeout_ms, const std::string& local,
                        const py::object& T_imu_sensor, double still_seconds, bool cold, std::uint64_t seed,
                        std::size_t queue_frames, std::string trace_folder, const py::object& T_base_sensor,
-                       double cpu_share, const py::object& on_pose, const py::object& on_reply) {
+                       double cpu_share, bool submap, const py::object& on_pose, const py::object& on_reply) {
              Options o;
              o.id = std::move(id);
              o.camera = camera;
@@ -126,6 +130,7 @@ void declare_client(py::module_& module) {
              o.queue_frames = queue_frames;
              o.trace_folder = std::move(trace_folder);
              o.cpu_share = cpu_share;
+             o.submap = submap;
              return make_client(std::move(o), local, T_imu_sensor, T_base_sensor, on_pose, on_reply);
            }),
            "id"_a, "camera"_a, py::kw_only(), "domain"_a = d.domain,
@@ -134,7 +139,8 @@ void declare_client(py::module_& module) {
            "reply_timeout_ms"_a = d.reply_timeout_ms, "local"_a = "cloud", "T_imu_sensor"_a = py::none(),
            "still_seconds"_a = d.still_seconds, "cold"_a = d.cold, "seed"_a = d.seed,
            "queue_frames"_a = d.queue_frames, "trace_folder"_a = d.trace_folder, "T_base_sensor"_a = py::none(),
-           "cpu_share"_a = d.cpu_share, "on_pose"_a = py::none(), "on_reply"_a = py::none())
+           "cpu_share"_a = d.cpu_share, "submap"_a = d.submap, "on_pose"_a = py::none(),
+           "on_reply"_a = py::none())
       .def("push_depth", &PythonClient::push_depth, "depth"_a, "stamp_ns"_a)
       .def("push_imu", &PythonClient::push_imu, "stamps_ns"_a, "samples"_a)
       .def("push_points", &PythonClient::push_points, "points"_a, "stamp_ns"_a)

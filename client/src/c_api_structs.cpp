@@ -75,6 +75,7 @@ liloc_client_options default_options() {
   o.queue_frames = d.queue_frames;
   o.T_base_sensor = to_c(Pose{});
   o.cpu_share = d.cpu_share;
+  o.submap = d.submap;
   return o;
 }
 
@@ -104,6 +105,7 @@ Result<Options> options_from(const liloc_client_options* options, std::size_t si
   if (o.trace_folder != nullptr) out.trace_folder = o.trace_folder;
   if (o.has_base) out.T_base_sensor = from_c(o.T_base_sensor);
   out.cpu_share = o.cpu_share;
+  out.submap = o.submap;
   return out;
 }
 
@@ -154,6 +156,10 @@ liloc_stats to_c(const Stats& stats) {
   s.odometry_refused = stats.odometry_refused;
   s.cpu_s = stats.cpu_s;
   stats.problem.copy(s.problem, sizeof(s.problem) - 1);  // the rest is 0
+  s.clock_offset_ms = stats.clock_offset_ms;
+  s.clock_round_trip_ms = stats.clock_round_trip_ms;
+  s.clock_good = stats.clock_good;
+  s.clock_jumps = stats.clock_jumps;
   return s;
 }
 

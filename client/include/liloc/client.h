@@ -101,6 +101,7 @@ typedef struct liloc_client_options {
   bool has_base;            /* T_base_sensor is set */
   liloc_pose T_base_sensor; /* with external odometry: the sensor on what the odometry moves */
   double cpu_share;         /* of one core, 0.02..1; frames are left out to keep it */
+  bool submap;              /* requests carry what stands around as well, unless `cold` */
 } liloc_client_options;
 
 typedef struct liloc_pose_update {
@@ -140,6 +141,11 @@ typedef struct liloc_stats {
   uint64_t odometry_refused;
   double cpu_s;      /* CPU time of the registration so far */
   char problem[256]; /* what is wrong with the input now, for people; "": nothing was noticed */
+  /* How far the device's clock runs ahead of the ceiling's, by the frames' stamps and the exchanges with the
+   * server. clock_good: known well enough to be used where it matters. */
+  double clock_offset_ms, clock_round_trip_ms;
+  bool clock_good;
+  uint64_t clock_jumps; /* a clock was set; what was learned of it is forgotten */
 } liloc_stats;
 
 typedef struct liloc_client liloc_client;

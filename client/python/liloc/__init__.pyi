@@ -125,6 +125,18 @@ class Stats:
     def cpu_s(self) -> float:
         """CPU time of the registration so far."""
     @property
+    def clock_offset_ms(self) -> float:
+        """How far the device's clock runs ahead of the ceiling's, by the frames' stamps and the exchanges with the
+        server."""
+    @property
+    def clock_round_trip_ms(self) -> float: ...
+    @property
+    def clock_good(self) -> bool:
+        """Known well enough to be used where it matters."""
+    @property
+    def clock_jumps(self) -> int:
+        """A clock was set; what was learned of it is forgotten."""
+    @property
     def problem(self) -> str:
         """What is wrong with the input now, for people; empty: nothing was noticed."""
 
@@ -153,6 +165,7 @@ class Client:
         trace_folder: str = "",
         T_base_sensor: Optional[npt.ArrayLike] = None,
         cpu_share: float = 1.0,
+        submap: bool = True,
         on_pose: Optional[Callable[[PoseUpdate], object]] = None,
         on_reply: Optional[Callable[[Reply], object]] = None,
     ) -> None:

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The type stubs name what the installed module has: every class, member, argument and default."""
 import ast
+import os
 import pathlib
 import re
 import unittest
@@ -33,6 +34,15 @@ def module_arguments(call):
     return [(name, default or None) for name, default in found if name != "self"]
 
 
+def header_fields(struct):
+    """Names of the fields of a struct in the installed liloc/client.hpp."""
+    header = pathlib.Path(os.environ["LILOC_INCLUDE"], "liloc", "client.hpp").read_text()
+    body = re.search(rf"^struct {struct} {{\n(.*?)^}};", header, re.DOTALL | re.MULTILINE).group(1)
+    body = re.sub(r"//.*|\{[^}]*\}", "", body)
+    declared = [re.sub(r"<[^;]*>", "", line) for line in body.split(";") if line.strip()]
+    return {re.sub(r"=.*", "", name).split()[-1] for line in declared for name in line.split(",")}
+
+
 def same_default(stub, module):
     if stub is None or module is None or stub == "...":
         return (stub is None) == (module is None)
@@ -51,6 +61,13 @@ class Stubs(unittest.TestCase):
             if name == "State":
                 found -= ENUM_CALLS
             self.assertEqual(found, stub_members(node) - {"__init__"}, name)
+
+    def test_fields_of_the_library(self):
+        for name in ("Camera", "PoseUpdate", "Reply", "Stats"):
+            self.assertEqual(header_fields(name), stub_members(CLASSES[name]) - {"__init__"}, name)
+        made = next(c for c in CLASSES["Client"].body if isinstance(c, ast.FunctionDef) and c.name == "__init__")
+        arguments = {name for name, _ in stub_arguments(made)}
+        self.assertEqual(header_fields("Options") | {"on_pose", "on_reply"}, arguments)
 
     def test_arguments_and_defaults(self):
         for class_name in ("Camera", "Client"):

@@ -166,6 +166,23 @@ std::vector<InertialSample> ImuTrack::span(StampNs from_ns, StampNs to_ns, bool 
   return samples;
 }
 
+std::vector<ImuSample> ImuTrack::samples(StampNs from_ns, StampNs to_ns) const {
+  const std::size_t begin = first_after(from_ns), end = first_after(to_ns);
+  const auto at = [&](std::size_t after, StampNs stamp_ns) {
+    if (after == entries_.size())
+      return ImuSample{stamp_ns, entries_.back().raw.angular_velocity_rad_s,
+                       entries_.back().raw.specific_force_m_s2};
+    const ImuSample &a = entries_[after - 1].raw, &b = entries_[after].raw;
+    const double share = to_seconds(stamp_ns - a.stamp_ns) / to_seconds(b.stamp_ns - a.stamp_ns);
+    return ImuSample{stamp_ns, (1 - share) * a.angular_velocity_rad_s + share * b.angular_velocity_rad_s,
+                     (1 - share) * a.specific_force_m_s2 + share * b.specific_force_m_s2};
+  };
+  std::vector<ImuSample> samples{at(begin, from_ns)};
+  for (std::size_t i = begin; i < end; ++i) samples.push_back(entries_[i].raw);
+  if (samples.back().stamp_ns < to_ns) samples.push_back(at(end, to_ns));
+  return samples;
+}
+
 Eigen::Matrix3d ImuTrack::rotation(StampNs from_ns, StampNs to_ns) const {
   return initial_transform(span(from_ns, to_ns, false), Eigen::Vector3d::Zero()).T_start_end.linear();
 }

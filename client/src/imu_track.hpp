@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <deque>
 #include <optional>
 #include <string>
@@ -37,6 +38,9 @@ class ImuTrack {
   /// be covered.
   [[nodiscard]] InertialMotion motion(StampNs from_ns, StampNs to_ns,
                                       const Eigen::Vector3d& velocity_m_s) const;
+  /// As they came (in m/s^2), for preintegration; the first and the last lie at the span's ends. The span must
+  /// be covered.
+  [[nodiscard]] std::vector<ImuSample> samples(StampNs from_ns, StampNs to_ns) const;
   /// Unit vector against gravity in IMU axes at a stamp within the last `keep_seconds`; empty before any
   /// sample.
   [[nodiscard]] std::optional<Eigen::Vector3d> up(StampNs stamp_ns) const;
@@ -49,6 +53,8 @@ class ImuTrack {
   [[nodiscard]] bool still() const { return calibrating_ && count_ > 20; }
   [[nodiscard]] bool calibrated() const { return calibrated_s_ >= 0.5; }
   [[nodiscard]] const Eigen::Vector3d& gyro_bias_rad_s() const { return bias_; }
+  /// Mean specific force while the device stood still, IMU axes; meaningful once calibrated.
+  [[nodiscard]] Eigen::Vector3d resting_force_m_s2() const { return force_sum_ / std::max(count_, 1.0); }
   /// What is wrong with the samples as of a frame, for people; empty: nothing was noticed.
   [[nodiscard]] std::string problem(StampNs now_ns) const;
 

@@ -9,13 +9,16 @@ namespace liloc {
 /// Notices depth that cannot be right, by what frames in a row have in common. Not thread-safe.
 class InputHealth {
  public:
-  /// `residual_m`: of the frame's match with the local map; 0 where there was none.
-  void note(FrameFault fault, double residual_m);
+  /// `residual_m`: of the frame's match with the local map; 0 where there was none. `strain`: how far the IMU's
+  /// predictions were off, against what was expected (InertialFilter::strain).
+  void note(FrameFault fault, double residual_m, double strain);
   /// For people; empty: nothing was noticed.
   [[nodiscard]] std::string problem() const;
 
  private:
   int empty_ = 0;                   ///< frames in a row without enough returns
+  int strained_ = 0;                ///< matches in a row that the IMU contradicted
+  double strain_ = 0;               ///< at the last one
   std::deque<double> residuals_m_;  ///< of the recent matches
 };
 

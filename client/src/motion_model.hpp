@@ -1,5 +1,6 @@
 #pragma once
 #include "client/src/imu_track.hpp"
+#include "client/src/inertial_filter.hpp"
 #include "common/registration/scan_match.hpp"
 
 namespace liloc {
@@ -11,24 +12,42 @@ struct FrameStep {
   Pose T_odom_from = Pose::Identity();
 };
 
-/// Where the device will be at the next frame: by Algorithm 1 (paper, section 5.1.2) where there are inertial
-/// samples, otherwise by constant velocity and turn rate.
+/// How inertial samples become a guess.
+enum class InertialMethod {
+  preintegration,  ///< a filter that learns velocity, biases and gravity from the registration
+  algorithm1,      ///< the paper's (section 5.1.2): smoothed samples, velocity fed back
+};
+
+/// Where the device will be at the next frame, by inertial samples where there are any, otherwise by constant
+/// velocity and turn rate.
 class MotionModel {
  public:
-  explicit MotionModel(std::optional<Pose> T_imu_sensor) : T_imu_sensor_(std::move(T_imu_sensor)) {}
+  explicit MotionModel(std::optional<Pose> T_imu_sensor, InertialMethod method = InertialMethod::preintegration)
+      : T_imu_sensor_(std::move(T_imu_sensor)), method_(method) {}
 
   /// `imu` may be null.
   [[nodiscard]] MotionGuess guess(const FrameStep& step, const ImuTrack* imu);
-  /// The pose that was measured after `guess`, where the one before it was measured too: corrects the velocity.
-  void learn(const FrameStep& step, const MotionGuess& guess, const Pose& T_odom_to);
+  /// The pose that was measured after `guess`, with its covariance (as MotionGuess has it): teaches the motion.
+  void learn(const FrameStep& step, const MotionGuess& guess, const MotionGuess& measured);
+  /// The device was found without the guess.
+  void relocated(const Pose& T_odom_sensor);
   /// A step that nobody measured and no IMU felt: the motion dies away.
   void fade(const FrameStep& step);
   void halt();
+  [[nodiscard]] const std::optional<InertialFilter>& filter() const { return filter_; }
 
  private:
   [[nodiscard]] MotionGuess by_imu(const FrameStep& step, const ImuTrack& imu);
+  [[nodiscard]] MotionGuess by_algorithm1(const FrameStep& step, const ImuTrack& imu);
+  [[nodiscard]] MotionGuess by_preintegration(const FrameStep& step, const ImuTrack& imu);
+  [[nodiscard]] MotionGuess by_constant_velocity(const FrameStep& step) const;
+  void start_filter(const FrameStep& step, const ImuTrack& imu);
 
   std::optional<Pose> T_imu_sensor_;
+  InertialMethod method_;
+  std::optional<InertialFilter> filter_;
+  StampNs filter_ns_ = 0;  ///< to which the filter has come
+  bool stood_still_ = false;
   bool by_imu_ = false;                                          ///< the last guess was
   Eigen::Vector3d velocity_odom_ = Eigen::Vector3d::Zero();      ///< of the sensor, m/s
   Eigen::Vector3d velocity_imu_odom_ = Eigen::Vector3d::Zero();  ///< of the IMU at the last frame, m/s

@@ -15,14 +15,18 @@ constexpr double kGyroTrustRad = 0.2;  // the gyro cannot be off by more over a 
 }  // namespace
 
 Odometry::Odometry(const OdometryOptions& options)
-    : options_(options), map_({.cell_m = options.cell_m}), motion_(options.T_imu_sensor) {}
+    : options_(options),
+      map_({.cell_m = options.cell_m}),
+      motion_(options.T_imu_sensor, options.method == LocalMethod::cloud ? InertialMethod::preintegration
+                                                                         : InertialMethod::algorithm1) {}
 
 bool Odometry::believable(const ScanMatch& match, const MotionGuess& guess, const DepthImage& image) const {
   const double turned = angle_between_rad(match.T_map_sensor, guess.T_map_sensor);
   const double moved = distance_m(match.T_map_sensor, guess.T_map_sensor);
-  if (match.overlap < options_.min_overlap || turned > 0.05 + 4 * guess.sd_rad || moved > 0.05 + 4 * guess.sd_m)
+  if (match.overlap < options_.min_overlap || turned > 0.05 + 4 * guess.sd_rad() ||
+      moved > 0.05 + 4 * guess.sd_m())
     return false;
-  return guess.sd_m < kVagueM || consistent(match, image);
+  return guess.sd_m() < kVagueM || consistent(match, image);
 }
 
 bool Odometry::consistent(const ScanMatch& match, const DepthImage& image) const {
@@ -43,8 +47,8 @@ std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vec
         "from a guess good to {:.1f} mm {:.3f} deg, map {}",
         found->overlap, found->paired, 1e3 * found->rmse_m, found->unobserved, found->iterations,
         1e3 * distance_m(found->T_map_sensor, guess.T_map_sensor),
-        degrees(angle_between_rad(found->T_map_sensor, guess.T_map_sensor)), 1e3 * guess.sd_m,
-        degrees(guess.sd_rad), map_.size());
+        degrees(angle_between_rad(found->T_map_sensor, guess.T_map_sensor)), 1e3 * guess.sd_m(),
+        degrees(guess.sd_rad()), map_.size());
   if (found && believable(*found, guess, image)) {
     step.method = options_.method == LocalMethod::inertial ? "inertial" : "icp";
     return *found;
@@ -73,9 +77,10 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
   step.sd_m = std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
   unmatched_ns_ = 0;
   anchored_ns_ = from.to_ns;
-  if (from.anchored_ns != from.from_ns) return;  // the step began at a guess
-  motion_.learn(from, guess, match.T_map_sensor);
-  if (imu == nullptr) return;
+  if (step.method == "ransac") return motion_.relocated(match.T_map_sensor);
+  motion_.learn(from, guess, {match.T_map_sensor, covariance});
+  if (motion_.filter()) step.strain = motion_.filter()->strain();
+  if (imu == nullptr || from.anchored_ns != from.from_ns) return;
   const Eigen::Matrix3d& R_imu_sensor = options_.T_imu_sensor->linear();
   const Eigen::Matrix3d R_step = from.T_odom_from.linear().transpose() * match.T_map_sensor.linear();
   imu->observe_rotation(from.from_ns, from.to_ns, R_imu_sensor * R_step * R_imu_sensor.transpose());
@@ -84,8 +89,8 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
 void Odometry::reckon(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step) {
   step.method = "inertial";
   step.T_odom_sensor = guess.T_map_sensor;
-  step.sd_rad = guess.sd_rad;
-  step.sd_m = guess.sd_m;
+  step.sd_rad = guess.sd_rad();
+  step.sd_m = guess.sd_m();
   anchored_ns_ = stamp_ns;
 }
 
@@ -93,8 +98,8 @@ void Odometry::coast(const MotionGuess& guess, const FrameStep& from, bool usabl
   step.method = "guess";
   step.converged = false;
   step.T_odom_sensor = guess.T_map_sensor;
-  step.sd_rad = guess.sd_rad;
-  step.sd_m = guess.sd_m;
+  step.sd_rad = guess.sd_rad();
+  step.sd_m = guess.sd_m();
   const StampNs blind = from.to_ns - from.anchored_ns;
   const StampNs longest = options_.T_imu_sensor ? options_.coast_ns : options_.coast_ns / 2;
   if (blind > longest)

@@ -33,6 +33,7 @@ struct OdometryStep {
   std::uint32_t segment = 0;
   double overlap = 0;           ///< of the match; 0 for a guess
   double residual_m = 0;        ///< of the match, root mean square; 0 for a guess
+  double strain = 0;            ///< between IMU and registration (InertialFilter::strain); 0 without
   double sd_rad = 0, sd_m = 0;  ///< of the motion since the previous frame
 };
 

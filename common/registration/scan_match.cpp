@@ -8,6 +8,9 @@
 namespace liloc {
 namespace {
 
+using Matrix6f = Eigen::Matrix<float, 6, 6>;
+using Vector6f = Eigen::Matrix<float, 6, 1>;
+
 constexpr double kCharacteristicLengthM = 2.0;  // weighs radians against metres when directions are compared
 
 struct Source {
@@ -60,42 +63,39 @@ void find_pairs(const LocalMap& map, const std::vector<Source>& sources, const P
   }
 }
 
-/// Half-width of the kernel: first what the guess may be off, halved with each iteration down to three robust
-/// standard deviations. Never so narrow that a dominating wall silences the little that shows motion along it.
-float kernel_width(const std::vector<Pair>& pairs, double guess_sd_m, int iteration,
-                   const ScanMatchOptions& options) {
-  std::vector<float> sizes;
-  sizes.reserve(pairs.size());
-  for (const Pair& p : pairs) sizes.push_back(std::abs(p.residual));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  const double noise = 3 * 1.4826 * static_cast<double>(*middle);
-  const double from_guess = 3 * guess_sd_m / (1 << std::min(iteration, 10));
-  return static_cast<float>(
-      std::clamp(std::max(noise, from_guess), options.kernel_min_m, options.kernel_max_m));
-}
-
 struct Normal {
   Matrix6d H = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
   double noise = 0;  ///< information along a direction that no plane faces, from errors of the normals alone
 };
 
-Normal accumulate(const std::vector<Pair>& pairs, float width, const ScanMatchOptions& options) {
+/// Half-width of the kernel, squared: what noise and a guess of covariance `doubt` let the residual be. Of a
+/// wall that is little, along a direction that is in doubt it is much; a person who walked off is outside of
+/// both.
+float kernel_squared(const Pair& p, const Matrix6f& doubt, const Vector6f& J, const ScanMatchOptions& options) {
+  const auto low = static_cast<float>(options.kernel_min_m), high = static_cast<float>(options.kernel_max_m);
+  const auto deviations = static_cast<float>(options.kernel_deviations);
+  const float expected = p.sd * p.sd + J.dot(doubt * J);
+  return std::clamp(deviations * deviations * expected, low * low, high * high);
+}
+
+Normal accumulate(const std::vector<Pair>& pairs, const Matrix6d& doubt, const ScanMatchOptions& options) {
   Normal n;
   double total = 0;
-  Eigen::Matrix<double, 6, 1> J;
+  const Matrix6f doubtf = doubt.cast<float>();
+  Vector6f J;
   for (const Pair& p : pairs) {
-    const float scaled = p.residual / width;
-    const float robust = 1.0F / ((1 + scaled * scaled) * (1 + scaled * scaled));
+    J.head<3>() = p.lever.cross(p.normal);
+    J.tail<3>() = p.normal;
+    const float scaled = p.residual * p.residual / kernel_squared(p, doubtf, J, options);
+    const float robust = 1.0F / ((1 + scaled) * (1 + scaled));
     const double share = static_cast<double>(p.weight) * robust;
     const double weight = share / (static_cast<double>(p.sd) * p.sd);
     total += share;
     n.noise += weight * static_cast<double>(p.normal_variance);
-    J.head<3>() = p.lever.cross(p.normal).cast<double>();
-    J.tail<3>() = p.normal.cast<double>();
-    n.H.selfadjointView<Eigen::Lower>().rankUpdate(J, weight);
-    n.b -= J * (weight * static_cast<double>(p.residual));
+    const Vector6d Jd = J.cast<double>();
+    n.H.selfadjointView<Eigen::Lower>().rankUpdate(Jd, weight);
+    n.b -= Jd * (weight * static_cast<double>(p.residual));
   }
   n.H = n.H.selfadjointView<Eigen::Lower>();
   const double correlated = std::min(1.0, options.independent_surfels / std::max(total, 1.0));
@@ -105,33 +105,38 @@ Normal accumulate(const std::vector<Pair>& pairs, float width, const ScanMatchOp
   return n;
 }
 
-/// Projector onto the directions that the scene observes (solution remapping, Zhang et al. 2016).
-Matrix6d observed_directions(const Normal& n, const ScanMatchOptions& options, int& unobserved) {
+/// Leaves the directions that the scene does not observe to the guess: what noisy normals feign there is taken
+/// out.
+void drop_unobserved(Normal& n, const ScanMatchOptions& options, ScanMatch& match) {
   Vector6d unit = Vector6d::Ones();
   unit.head<3>() /= kCharacteristicLengthM;
   const Matrix6d scaled = unit.asDiagonal() * n.H * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
   const double least = std::max(options.observed_share * scaled.trace(), options.observed_noise * n.noise);
   Matrix6d keep = Matrix6d::Zero();
-  unobserved = 0;
+  match.unobserved = 0;
   for (int i = 0; i < 6; ++i) {
     if (solver.eigenvalues()[i] < least) {
-      ++unobserved;
+      ++match.unobserved;
       continue;
     }
     const Vector6d v = solver.eigenvectors().col(i);
     keep += v * v.transpose();
   }
-  return unit.asDiagonal() * keep * unit.cwiseInverse().asDiagonal();
+  match.observed = keep.diagonal();
+  if (match.unobserved == 0) return;
+  const Matrix6d project = unit.cwiseInverse().asDiagonal() * keep * unit.asDiagonal();
+  n.H = project * n.H * project.transpose();
+  n.b = project * n.b;
 }
 
 /// Adds the guess as a measurement of the pose.
-void add_prior(Normal& n, const MotionGuess& guess, const Pose& T) {
-  const double w_rad = 1.0 / (guess.sd_rad * guess.sd_rad), w_m = 1.0 / (guess.sd_m * guess.sd_m);
-  n.H.diagonal().head<3>().array() += w_rad;
-  n.H.diagonal().tail<3>().array() += w_m;
-  n.b.head<3>() += w_rad * so3_log(guess.T_map_sensor.linear() * T.linear().transpose());
-  n.b.tail<3>() += w_m * (guess.T_map_sensor.translation() - T.translation());
+void add_prior(Normal& n, const MotionGuess& guess, const Matrix6d& certainty, const Pose& T) {
+  Vector6d back;
+  back.head<3>() = so3_log(guess.T_map_sensor.linear() * T.linear().transpose());
+  back.tail<3>() = guess.T_map_sensor.translation() - T.translation();
+  n.H += certainty;
+  n.b += certainty * back;
 }
 
 /// Turns about the sensor, so that rotation and translation stay decoupled far from the map's origin.
@@ -155,6 +160,19 @@ void grade(ScanMatch& match, const std::vector<Pair>& pairs, std::size_t sources
 
 }  // namespace
 
+MotionGuess::MotionGuess(const Pose& T, double sd_rad, double sd_m) : T_map_sensor(T) {
+  covariance.diagonal().head<3>().setConstant(sd_rad * sd_rad);
+  covariance.diagonal().tail<3>().setConstant(sd_m * sd_m);
+}
+
+double MotionGuess::sd_rad() const {
+  return std::sqrt(covariance.diagonal().head<3>().maxCoeff());
+}
+
+double MotionGuess::sd_m() const {
+  return std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
+}
+
 Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
                              StampNs now_ns, const ScanMatchOptions& options) {
   if (map.size() == 0) return fail("scan match: the local map is empty; insert a first frame");
@@ -162,17 +180,19 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
   if (sources.empty()) return fail("scan match: none of {} surfels is flat enough for a normal", frame.size());
   ScanMatch match;
   match.T_map_sensor = guess.T_map_sensor;
+  const Matrix6d certainty = guess.covariance.inverse();
+  match.information = certainty;
   std::vector<Pair> pairs;
   pairs.reserve(sources.size());
   for (match.iterations = 0; match.iterations < options.max_iterations && !match.settled; ++match.iterations) {
     find_pairs(map, sources, match.T_map_sensor, now_ns, pairs);
     if (pairs.size() < 6) break;
-    Normal n = accumulate(pairs, kernel_width(pairs, guess.sd_m, match.iterations, options), options);
-    const Matrix6d observed = observed_directions(n, options, match.unobserved);
-    add_prior(n, guess, match.T_map_sensor);
+    // Each step halves what the guess may still be off.
+    Normal n = accumulate(pairs, guess.covariance / (1 << std::min(2 * match.iterations, 20)), options);
+    drop_unobserved(n, options, match);
+    add_prior(n, guess, certainty, match.T_map_sensor);
     match.information = n.H;
-    Vector6d step = n.H.ldlt().solve(n.b);
-    if (match.unobserved > 0) step = observed * step;
+    const Vector6d step = n.H.ldlt().solve(n.b);
     apply(match.T_map_sensor, step);
     match.settled = step.head<3>().norm() < options.stop_rad && step.tail<3>().norm() < options.stop_m;
   }

@@ -10,8 +10,15 @@ namespace liloc {
 /// solution as a prior: where the scene says nothing, the guess decides.
 struct MotionGuess {
   Pose T_map_sensor = Pose::Identity();
-  double sd_rad = 0.03;  ///< each axis
-  double sd_m = 0.05;    ///< each axis
+  Matrix6d covariance = Matrix6d::Identity();  ///< [rotation; translation], map axes about the sensor
+
+  MotionGuess() = default;
+  MotionGuess(const Pose& T, const Matrix6d& covariance_map) : T_map_sensor(T), covariance(covariance_map) {}
+  /// One standard deviation for each axis.
+  MotionGuess(const Pose& T, double sd_rad, double sd_m);
+  /// Of the axis that is known least.
+  [[nodiscard]] double sd_rad() const;
+  [[nodiscard]] double sd_m() const;
 };
 
 struct ScanMatchOptions {
@@ -19,10 +26,11 @@ struct ScanMatchOptions {
   std::size_t max_surfels = 1500;  ///< of the frame; more are thinned evenly
   double min_flatness = 0.4;       ///< surfels below have no trustworthy normal
   double stop_rad = 2e-5, stop_m = 5e-5;
-  double sensor_sd_m = 0.006;        ///< of a surfel's distance to a plane: noise, calibration and model
-  double noise_per_m2 = 0.0008;      ///< and what grows with the square of the range
-  double kernel_min_m = 0.04;        ///< never narrower: what shows motion along a wall is to be heard
-  double kernel_max_m = 0.10;        ///< farther from its plane, a surfel hardly counts
+  double sensor_sd_m = 0.006;    ///< of a surfel's distance to a plane: noise, calibration and model
+  double noise_per_m2 = 0.0008;  ///< and what grows with the square of the range
+  double kernel_deviations = 3;  ///< of what noise and the guess explain, where a surfel begins to count less
+  double kernel_min_m = 0.02;    ///< never narrower: the map's own surfels err by as much at edges
+  double kernel_max_m = 0.10;    ///< nor wider
   double independent_surfels = 250;  ///< neighbours err together: no more than so many count as independent
   double observed_noise =
       3;  ///< a direction with less information than so many times what noisy normals feign,
@@ -34,6 +42,8 @@ struct ScanMatch {
   /// Of the scene and the prior, [rotation; translation], map axes about the sensor's position.
   Matrix6d information = Matrix6d::Zero();
   int unobserved = 0;  ///< directions left to the guess (0..6)
+  /// Share of a motion along each axis that the scene shows, 0 (the guess decides) .. 1; map axes.
+  Vector6d observed = Vector6d::Zero();
   double overlap = 0;  ///< share of the used surfels with a plane within three sensor deviations, 0..1
   double paired = 0;   ///< share of the used surfels with any plane near, 0..1
   double rmse_m = 0;   ///< distance to the planes over the overlap
@@ -42,9 +52,10 @@ struct ScanMatch {
 };
 
 /// Point-to-plane registration of a frame's surfels (sensor frame) to the map, with a Geman-McClure kernel
-/// whose width follows the residuals, the guess as a prior and unobserved directions held at the guess. Pure.
-/// `now_ns` is the frame's stamp: surfels of the map younger than its trust limit weigh less.
-/// Errors: an empty map or frame. A poor fit is a result, not an error.
+/// for each pair as wide as noise and the guess explain, the guess as a prior and unobserved directions left to
+/// it (after "solution remapping", Zhang, Kaess, Singh 2016). Pure. `now_ns` is the frame's stamp: surfels of
+/// the map younger than its trust limit weigh less. Errors: an empty map or frame. A poor fit is a result, not
+/// an error.
 [[nodiscard]] Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame,
                                            const MotionGuess& guess, StampNs now_ns,
                                            const ScanMatchOptions& options = {});

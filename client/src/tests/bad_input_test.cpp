@@ -146,6 +146,14 @@ TEST(BadInput, WrongIntrinsicsAreNoticed) {
   EXPECT_THAT(feed.problem, HasSubstr("intrinsics"));
 }
 
+TEST(BadInput, AWrongMountingOfTheImuIsNoticed) {
+  Feed feed;
+  feed.options.T_imu_sensor->linear() = so3_exp({0, 0, 0.3}) * feed.options.T_imu_sensor->linear();
+  feed.run(8);
+  EXPECT_THAT(feed.problem, HasSubstr("T_imu_sensor"));
+  EXPECT_LT(feed.error_m, 0.3);  // and does less harm than it could
+}
+
 TEST(BadInput, NotANumberFromTheImuIsRefused) {
   EngineOptions options = engine_options();
   options.T_imu_sensor = mounting();

@@ -199,9 +199,10 @@ std::string Daemon::summary() const {
   const client::PoseUpdate newest = client_->newest();
   const std::string frames = fmt::format(
       "{} frames ({} dropped, {} left out, {} refused, {} non-informative; {:.1f} ms median, {:.1f} ms p99, "
-      "{:.1f} s of CPU)",
+      "{:.1f} s of CPU{})",
       s.frames, s.frames_dropped, s.frames_skipped, s.frames_refused, s.frames_uninformative, s.frame_ms_median,
-      s.frame_ms_p99, s.cpu_s);
+      s.frame_ms_p99, s.cpu_s,
+      s.localized_s > 0 ? fmt::format(", {:.1f} ms per localized second", 1e3 * s.cpu_s / s.localized_s) : "");
   const std::string answers =
       fmt::format("{} requests ({} unsent, {} unanswered), {} replies ({} verified, {} refused)", s.requests,
                   s.requests_unsent, s.requests_unanswered, s.replies, s.replies_verified, s.replies_refused);

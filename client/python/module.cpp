@@ -64,7 +64,8 @@ void declare_values(py::module_& module) {
       .def_readonly("clock_round_trip_ms", &Stats::clock_round_trip_ms)
       .def_readonly("clock_good", &Stats::clock_good)
       .def_readonly("clock_jumps", &Stats::clock_jumps)
-      .def_readonly("problem", &Stats::problem);
+      .def_readonly("problem", &Stats::problem)
+      .def_readonly("localized_s", &Stats::localized_s);
 }
 
 void declare_answers(py::module_& module) {

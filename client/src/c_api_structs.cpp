@@ -160,6 +160,7 @@ liloc_stats to_c(const Stats& stats) {
   s.clock_round_trip_ms = stats.clock_round_trip_ms;
   s.clock_good = stats.clock_good;
   s.clock_jumps = stats.clock_jumps;
+  s.localized_s = stats.localized_s;
   return s;
 }
 

@@ -151,6 +151,7 @@ Stats to_public(const SessionStats& s) {
   stats.cpu_s = s.cpu_s;
   stats.problem = s.problem;
   stats.clock_jumps = s.clock_jumps;
+  stats.localized_s = s.localized_s;
   if (!s.clock) return stats;
   stats.clock_offset_ms = to_ms(s.clock->offset_ns);
   stats.clock_round_trip_ms = to_ms(s.clock->round_trip_ns);

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t kMostImuSamples = 4000;  // 20 s at 200 Hz, while no frame comes
 constexpr std::size_t kLatencies = 512;
-constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits
+constexpr StampNs kLongestStep = from_ms(1000);  // between frames that carry the pose on
+constexpr std::size_t kOutbox = 2;               // an older request is worthless once a newer one waits
 
 constexpr auto kOdometryWait = std::chrono::milliseconds(60);  // a frame for the odometry of its stamp
 
@@ -182,6 +183,8 @@ Tracking Session::Impl::note(const FrameResult& frame) {
   stats.frames_uninformative += frame.informative ? 0 : 1;
   latencies_ms.push_back(frame.latency_ms);
   if (latencies_ms.size() > kLatencies) latencies_ms.pop_front();
+  if (newest && frame.T_map_sensor)  // a pause is not counted in full
+    stats.localized_s += to_seconds(std::min(frame.stamp_ns - newest->stamp_ns, kLongestStep));
   newest = frame;
   if (now == tracking) return now;
   log::write(now == Tracking::coasting ? log::Level::warning : log::Level::info,

@@ -34,6 +34,7 @@ struct SessionStats {
   std::string problem;
   std::optional<ClockOffset> clock;  ///< of the device against the ceiling
   std::uint64_t clock_jumps = 0;
+  double localized_s = 0;  ///< of the device's time, with a global pose
 };
 
 /// All calls are safe from any thread; none waits for the network.

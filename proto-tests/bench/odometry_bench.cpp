@@ -35,7 +35,7 @@ struct Run {
   std::vector<Pose> truth;
   int requests = 0;
   double worst_up_deg = -1;
-  std::size_t lpc_bytes = 0;
+  std::size_t lpc_bytes = 0, extra_bytes = 0;
   double cpu_s = 0;                 ///< of the engine, reading of files left out
   std::optional<double> package_j;  ///< of the whole processor in the time of the run, where the kernel tells
 };
@@ -47,9 +47,11 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+constexpr const char* kEnergyCounter = "/sys/class/powercap/intel-rapl:0/energy_uj";
+
 /// Energy counter of the processor; empty without the right or the means to read it.
 std::optional<double> package_joules() {
-  std::ifstream file("/sys/class/powercap/intel-rapl:0/energy_uj");
+  std::ifstream file(kEnergyCounter);
   double microjoules = 0;
   if (!(file >> microjoules)) return std::nullopt;
   return 1e-6 * microjoules;
@@ -92,6 +94,7 @@ Result<Run> run_device(const DeviceRecording& device, const Options& options) {
     if (const auto request = engine.take_request()) {
       ++run.requests;
       run.lpc_bytes += request->lpc.bytes.size();
+      run.extra_bytes += request->extra.bytes.size();
       if (request->up_sensor) {
         const Eigen::Vector3d up_true = run.truth.back().linear().transpose() * Eigen::Vector3d::UnitZ();
         run.worst_up_deg = std::max(
@@ -137,17 +140,22 @@ void report(const std::string& name, const Run& run, const Options& options) {
   fmt::print(
       "{:28} path {:5.2f} m  end {:5.1f} mm {:5.2f} %  {:5.2f} deg  pairs {:.3f} (median {:.1f} mm)  "
       "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B  "
+      "around {} B  "
       "residual {:.1f} mm  {:.1f} ms of CPU per second{}\n",
       name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
       degrees(rotation_angle_rad(end)), good / static_cast<double>(f.size() - 1), quantile(step_mm, 0.5),
       quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess, dull, f.back().odom_segment + 1,
       run.worst_up_deg, run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)),
-      quantile(residual_mm, 0.5), 1e3 * run.cpu_s / seconds,
+      run.extra_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
+      1e3 * run.cpu_s / seconds,
       run.package_j ? fmt::format("  {:.2f} J per second, reading of files included", *run.package_j / seconds)
                     : "");
 }
 
 int run_all(const Options& options) {
+  if (!package_joules())
+    fmt::print(stderr, "energy is not measured: {} cannot be read (no RAPL, or for root alone)\n",
+               kEnergyCounter);
   for (const std::string& root : options.recordings) {
     const auto recording = open_recording(root);
     if (!recording) {

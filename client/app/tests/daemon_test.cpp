@@ -82,6 +82,7 @@ TEST(Daemon, LocatesARobotByItsWheelsAndClouds) {
     std::this_thread::sleep_for(30ms);
   }
   EXPECT_THAT((*daemon)->summary(), HasSubstr("robot1: tracking, server there"));
+  EXPECT_THAT((*daemon)->summary(), HasSubstr("ms per localized second"));
   EXPECT_TRUE((*daemon)->stop());
 }
 

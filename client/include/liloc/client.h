@@ -146,6 +146,7 @@ typedef struct liloc_stats {
   double clock_offset_ms, clock_round_trip_ms;
   bool clock_good;
   uint64_t clock_jumps; /* a clock was set; what was learned of it is forgotten */
+  double localized_s;   /* of the device's time, with a global pose; cpu_s over it is what a second costs */
 } liloc_stats;
 
 typedef struct liloc_client liloc_client;

@@ -126,6 +126,7 @@ struct Stats {
   bool clock_good = false;
   std::uint64_t clock_jumps = 0;  ///< a clock was set; what was learned of it is forgotten
   std::string problem;            ///< what is wrong with the input now, for people; empty: nothing was noticed
+  double localized_s = 0;  ///< of the device's time, with a global pose; cpu_s over it is what a second costs
 };
 
 /// Called for every processed frame on the registration thread: a slow callback delays the next frame.

@@ -19,10 +19,10 @@ void expect_same(const Pose& T, const liloc_pose& pose) {
 
 TEST(CApiFields, Stats) {
   const Stats stats{
-      1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18.5, true, 20, "the IMU is silent"};
+      1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18.5, true, 20, "the IMU is silent", 21};
   const auto& [frames, dropped, refused, uninformative, imu_refused, requests, unsent, unanswered, replies,
                verified, replies_refused, median, p99, skipped, odometry_refused, cpu, offset, round_trip, good,
-               jumps, problem] = stats;
+               jumps, problem, localized] = stats;
   const liloc_stats s = to_c(stats);
   EXPECT_EQ(s.frames, frames);
   EXPECT_EQ(s.frames_dropped, dropped);
@@ -45,6 +45,7 @@ TEST(CApiFields, Stats) {
   EXPECT_EQ(s.clock_good, good);
   EXPECT_EQ(s.clock_jumps, jumps);
   EXPECT_EQ(s.problem, problem);
+  EXPECT_EQ(s.localized_s, localized);
 }
 
 TEST(CApiFields, AProblemOfAnyLengthEndsWithAZero) {

@@ -139,6 +139,9 @@ class Stats:
     @property
     def problem(self) -> str:
         """What is wrong with the input now, for people; empty: nothing was noticed."""
+    @property
+    def localized_s(self) -> float:
+        """Of the device's time, with a global pose; cpu_s over it is what a second costs."""
 
 class Client:
     """Runs from its making to stop(), the end of its `with` block, or the end of the program."""

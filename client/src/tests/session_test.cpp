@@ -99,6 +99,8 @@ TEST(Session, RepliesLocateTheNextFrame) {
   const auto frame = (*session)->newest_frame();
   ASSERT_TRUE(frame->T_map_sensor);
   EXPECT_NEAR(frame->T_map_sensor->translation().y(), 8, 0.05);
+  EXPECT_NEAR((*session)->stats().localized_s,
+              to_seconds(frame_at(room, 1).stamp_ns - frame_at(room, 0).stamp_ns), 1e-9);
   EXPECT_EQ((*session)->tracking(), Tracking::tracking);
 }
 

@@ -7,6 +7,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "common/base/log.hpp"
 #include "server/localization/session.hpp"
@@ -35,6 +36,7 @@ struct Localizer::Impl {
   mutable std::mutex mutex;
   std::map<std::string, std::shared_ptr<Session>> sessions;
   std::map<std::string, Pose> last_learned;        ///< per client; a device that stands still teaches once
+  std::set<std::string> troubled;                  ///< clients whose trouble the log has
   std::shared_ptr<const Snapshot> first_snapshot;  ///< static_noopt: the room as it was at the start
 
   std::shared_ptr<Session> session(const std::string& client_id) {
@@ -63,6 +65,7 @@ struct Localizer::Impl {
     reply.gpc_stamp_ns = (*spot)->gpc_stamp_ns();
     held->answer(request, *spot, &reply);
     note_gravity(request, **room, &reply);
+    if (!(*spot)->trouble().empty()) note_trouble(request.client_id, **spot, &reply);
     learn(**spot, reply);
     return reply;
   }
@@ -70,6 +73,13 @@ struct Localizer::Impl {
   std::shared_ptr<const CellBounds> bounds() const {
     const std::scoped_lock lock(mutex);
     return learned;
+  }
+
+  /// The client is told each time, the log once.
+  void note_trouble(const std::string& client_id, const Spot& spot, SpotReply* reply) {
+    reply->text += "; " + spot.trouble();
+    const std::scoped_lock lock(mutex);
+    if (troubled.insert(client_id).second) log::warning("{}: {}", client_id, spot.trouble());
   }
 
   void learn(const Spot& spot, const SpotReply& reply) {
@@ -88,6 +98,7 @@ Localizer::Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBo
     : impl_(new Impl{global_cloud,
                      std::move(options),
                      std::make_shared<const CellBounds>(std::move(learned)),
+                     {},
                      {},
                      {},
                      {},
@@ -114,6 +125,7 @@ void Localizer::forget(const std::string& client_id) {
   const std::scoped_lock lock(impl_->mutex);
   impl_->sessions.erase(client_id);
   impl_->last_learned.erase(client_id);
+  impl_->troubled.erase(client_id);
 }
 
 std::shared_ptr<const CellBounds> Localizer::learned() const {

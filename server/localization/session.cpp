@@ -80,6 +80,7 @@ Evidence Session::gathered(const Spot& spot, const std::vector<Hypothesis>& foun
   e.stayed = best.fits.back();
   e.supports = best.supports();
   e.lead_per_spot = tracks_.lead() / static_cast<double>(tracks_.spots());
+  if (tracks_.best_first().size() > 1) e.rival_supports = tracks_.best_first()[1].supports();
   if (own_answers_.size() < 3) return e;
   const Verification v = verify({own_answers_[0], own_answers_[1], own_answers_[2]}, verify_.equality);
   const SpotPose newest{v.T_map_sensor[2], own_answers_[2].T_odom_sensor};
@@ -125,7 +126,7 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
     return conclude(SpotStatus::verified, *why, reply);
   }
   const bool few = tracks_.spots() < static_cast<std::size_t>(verify_.spots);
-  const bool led = evidence_.lead_per_spot >= verify_.lead_per_spot;
+  const bool led = evidence_.lead_per_spot >= lead_needed(evidence_, verify_);
   conclude(SpotStatus::provisional,
            few   ? Reason::awaiting_spots
            : led ? Reason::inconsistent

@@ -60,8 +60,12 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
   spot->bounds_ = std::move(bounds);
   spot->T_odom_sensor_ = request.T_odom_sensor;
   Cloud extra;
-  if (!request.extra.bytes.empty())
-    if (auto decoded = decode(request.extra)) extra = std::move(*decoded);
+  if (!request.extra.bytes.empty()) {
+    if (auto decoded = decode(request.extra))
+      extra = std::move(*decoded);
+    else
+      spot->trouble_ = "surroundings left out: " + decoded.error().message;
+  }
   spot->query_ = make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed}, extra);
   const double fewest = kLeastSurface_m2 / (options.voxel_size_m * options.voxel_size_m);
   if (static_cast<double>(spot->query_.cloud.size()) < fewest)

@@ -25,6 +25,8 @@ class Spot {
   [[nodiscard]] const Query& query() const { return query_; }
   [[nodiscard]] StampNs gpc_stamp_ns() const { return snapshot_->stamp_ns(); }
   [[nodiscard]] const Pose& T_odom_sensor() const { return T_odom_sensor_; }
+  /// What of the request could not be used, for people; empty: nothing.
+  [[nodiscard]] const std::string& trouble() const { return trouble_; }
   /// The middle of the device's cloud if the device were there, map frame.
   [[nodiscard]] Eigen::Vector3d middle_at(const Pose& T_map_sensor) const {
     return T_map_sensor * middle_sensor_;
@@ -34,6 +36,7 @@ class Spot {
 
  private:
   std::shared_ptr<const CellBounds> bounds_;
+  std::string trouble_;
   std::shared_ptr<const Snapshot> snapshot_;
   Query query_;
   Eigen::Vector3d middle_sensor_ = Eigen::Vector3d::Zero();

@@ -17,8 +17,13 @@ bool conclusive(const Evidence& evidence, const VerifyOptions& options) {
          sure(evidence.own_estimate, options);
 }
 
+double lead_needed(const Evidence& evidence, const VerifyOptions& options) {
+  return evidence.rival_supports >= evidence.supports ? options.lead_over_fitting : options.lead_per_spot;
+}
+
 std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options) {
-  const bool led = evidence.supports >= options.spots && evidence.lead_per_spot >= options.lead_per_spot;
+  const bool led =
+      evidence.supports >= options.spots && evidence.lead_per_spot >= lead_needed(evidence, options);
   return led && holds(evidence, options) ? evidence.chain : std::nullopt;
 }
 

@@ -12,8 +12,10 @@ namespace liloc {
 struct VerifyOptions {
   EqualityThresholds equality;
   TrackOptions tracks;
-  int spots = 3;                      ///< the paper's number
-  double lead_per_spot = 0.08;        ///< of the best track over the second, over the spots in memory
+  int spots = 3;                ///< the paper's number
+  double lead_per_spot = 0.08;  ///< of the best track over the second, over the spots in memory
+  double lead_over_fitting =
+      0.25;  ///< the same over a second that nothing contradicts: a room like from two places
   double conclusive_margin = 0.45;    ///< of one spot alone: score over the runner-up's ...
   double conclusive_agree = 0.45;     ///< ... share of device points on seen surfaces ...
   double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
@@ -34,10 +36,13 @@ struct Evidence {
   PoseEstimate best_estimate;
   bool stayed = false;          ///< whether that refinement stayed with its prediction
   int supports = 0;             ///< spots in memory that fit the track, this one among them
+  int rival_supports = 0;       ///< spots in memory that fit the second as well
   double lead_per_spot = 0;     ///< of it over the second, in points of score
   std::optional<Reason> chain;  ///< how the paper's checks tie it to the spots' own answers, where they do
 };
 
+/// The lead over the second that several spots need to decide.
+[[nodiscard]] double lead_needed(const Evidence& evidence, const VerifyOptions& options);
 /// Whether one spot decides alone.
 [[nodiscard]] bool conclusive(const Evidence& evidence, const VerifyOptions& options);
 /// Whether several spots decide: confirmed or corrected.

@@ -86,23 +86,6 @@ TEST(Localizer, RefusalsSayWhy) {
   EXPECT_THAT(reply.text, testing::HasSubstr("points"));
 }
 
-TEST(Localizer, ADeviceOutsideTheCoveredAreaIsNeverVerified) {
-  World world(2);
-  scene::BoxRoom other = scene::furnished_room(77);  // a larger room, which no ceiling LiDAR sees
-  other.walls.high = {9.5, 7.0, 3.4};
-  std::swap(other, world.room);
-  const scene::BoxRoom& seen = other;
-  for (int k = 0; k < 6; ++k) {
-    for (std::size_t i = 0; i < world.site.global_lidars.size(); ++i)
-      ASSERT_TRUE(world.cloud->add_depth(i, scene::render(seen, world.site.global_lidars[i].T_map_sensor,
-                                                          scene::small_camera(), kT0 + k * kStep, 0.005, 5)));
-    const SpotReply reply = world.localizer->locate(world.request(k, world.truth(k)));
-    EXPECT_FALSE(reply.verified()) << "spot " << k << " " << name_of(reply.reason) << " overlap "
-                                   << reply.overlap << " fitness " << reply.fitness << " margin "
-                                   << reply.margin;
-  }
-}
-
 /// Four spots of a walk whose device takes `up_sensor` of the truth for up; how many are right.
 int right_spots(World& world, const std::function<void(SpotRequest*)>& spoil, bool* noticed = nullptr) {
   int right = 0;

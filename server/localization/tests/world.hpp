@@ -15,12 +15,13 @@ inline constexpr StampNs kT0 = 1'700'000'000'000'000'000, kStep = from_ms(800);
 
 /// A room under three ceiling LiDARs, and a device that walks in it with its own idea of where odom lies.
 struct World {
-  explicit World(unsigned seed_in, const LocalizerOptions& options = {}, CellBounds learned = {})
+  explicit World(unsigned seed_in, const LocalizerOptions& options = {}, CellBounds learned = {},
+                 std::size_t lidars = 3)
       : seed(seed_in), room(scene::furnished_room(seed_in)) {
     const std::array poses{scene::looking({0.2, 0.2, 2.6}, radians(45), radians(35)),
                            scene::looking({5.8, 0.3, 2.6}, radians(130), radians(35)),
                            scene::looking({3.0, 4.8, 2.6}, radians(-90), radians(35))};
-    for (std::size_t i = 0; i < poses.size(); ++i)
+    for (std::size_t i = 0; i < std::min(lidars, poses.size()); ++i)
       site.global_lidars.push_back({"ceiling" + std::to_string(i), scene::small_camera(), 6, poses[i]});
     cloud = std::make_unique<GlobalCloud>(site, global_cloud_options_for(options));
     voxel_size_m = options.voxel_size_m;

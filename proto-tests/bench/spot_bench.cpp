@@ -3,6 +3,8 @@
 //
 //   liloc_spot_bench --sites 100 [--first-seed 1] [--jobs 2] [--threads 1] [--csv rows.csv] [--no-gravity]
 //   liloc_spot_bench --recordings DIR...
+//   liloc_spot_bench --pairs DIR [--peer-every 1]
+//   liloc_spot_bench --sites 100 --peer-every 10   # PCL and Open3D on the same clouds
 //   liloc_spot_bench --sites 100 --evidence rows.txt; liloc_spot_bench --sweep rows.txt   # thresholds, as
 //   Markdown
 //
@@ -14,6 +16,7 @@
 #include <mutex>
 #include <thread>
 
+#include "proto-tests/bench/spot_bench_pairs.hpp"
 #include "proto-tests/bench/spot_bench_sweep.hpp"
 #include "proto-tests/bench/spot_bench_tables.hpp"
 #include "proto-tests/bench/spot_bench_trial.hpp"
@@ -27,7 +30,7 @@ struct Options {
   double seconds = 12;
   std::vector<std::string> recordings;
   bool verbose = false;
-  std::string csv, evidence, sweep;
+  std::string pairs, csv, evidence, sweep;
   TrialOptions trial;
 };
 
@@ -72,9 +75,41 @@ Result<TrialResult> run_stages(const Options& options) {
   for (auto& result : results) {
     if (!result) return tl::unexpected(result.error());
     all.rows.insert(all.rows.end(), result->rows.begin(), result->rows.end());
+    const std::size_t before = all.rows.size() - result->rows.size();
+    for (PeerProblem& problem : result->problems) {
+      problem.row += before;
+      all.problems.push_back(std::move(problem));
+    }
     all.evidence.insert(all.evidence.end(), result->evidence.begin(), result->evidence.end());
   }
   return all;
+}
+
+/// PCL and Open3D on the spots that were kept for them, beside our own answers.
+void run_peers(const TrialResult& ours, int threads) {
+  Method cold{"LiLoc cold", {}}, history{"LiLoc with history", {}}, pcl{"PCL", {}}, open3d{"Open3D", {}};
+  const auto row_of = [](const PeerProblem& problem, const PeerAnswer& answer) {
+    SpotReply reply;
+    reply.T_map_sensor = answer.T_target_source;
+    reply.latency_ms = answer.latency_ms;
+    Row row = judged(std::move(reply), problem.T_target_source_true);
+    row.overlap = problem.overlap;
+    return row;
+  };
+  for (const PeerProblem& problem : ours.problems) {
+    cold.rows.push_back(ours.rows[problem.row]);
+    history.rows.push_back(ours.rows[problem.row + 1]);
+    pcl.rows.push_back(row_of(problem, ask_pcl(problem, threads)));
+  }
+  std::vector<Method> methods{std::move(cold), std::move(history), std::move(pcl)};
+  if (const auto answers = ask_open3d(ours.problems, threads)) {
+    for (std::size_t i = 0; i < answers->size(); ++i)
+      open3d.rows.push_back(row_of(ours.problems[i], (*answers)[i]));
+    methods.push_back(std::move(open3d));
+  } else {
+    fmt::print("{}\n", answers.error().message);
+  }
+  print_methods(methods);
 }
 
 int complain(const Error& error) {
@@ -89,6 +124,10 @@ int run(const Options& options) {
     print_sweep(*evidence);
     return 0;
   }
+  if (!options.pairs.empty()) {
+    const Status done = run_pairs({options.pairs, options.trial.threads, options.trial.peer_every});
+    return done ? 0 : complain(done.error());
+  }
   const auto result = run_stages(options);
   if (!result) return 1;
   const std::string what = options.recordings.empty()
@@ -100,6 +139,7 @@ int run(const Options& options) {
   print_success(result->rows, false);
   print_by_site(result->rows);
   print_consistency(result->rows);
+  if (options.trial.peer_every > 0) run_peers(*result, options.trial.threads);
   if (!options.csv.empty())
     if (const Status written = write_csv(options.csv, result->rows); !written) return complain(written.error());
   if (!options.evidence.empty())
@@ -127,6 +167,11 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--threads", options.trial.threads, "Per request")
       ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  app.add_option("--pairs", options.pairs, "Folder of pairs with their gt.log, in place of sites");
+  app.add_option("--peer-every", options.trial.peer_every,
+                 "Ask PCL and Open3D for one in so many spots or pairs; 0: never")
+      ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   app.add_option("--csv", options.csv, "Write a row per spot");
   app.add_option("--evidence", options.evidence, "Write what each decision rested on, for --sweep");

@@ -15,7 +15,7 @@ namespace {
 
 using sim::SiteKind;
 
-constexpr double kFloorPerLidar_m2 = 25;
+constexpr double kFloorPerLidar_m2 = 25, kNarrowest_m = 2.2;
 
 struct KindOfSite {
   SiteKind kind;
@@ -65,7 +65,7 @@ sim::SimOptions site_options(std::uint64_t seed, double seconds) {
   const double floor_m2 = random.uniform(kind.low_m2, kind.high_m2);
   const double ratio = random.uniform(kind.low_ratio, kind.high_ratio);
   o.width_m = std::sqrt(floor_m2 * ratio);
-  o.depth_m = floor_m2 / o.width_m;
+  o.depth_m = std::max(floor_m2 / o.width_m, kNarrowest_m);
   o.clutter = random.uniform(0.3, 1.5);
   o.people = std::min(random.below(13), static_cast<int>(floor_m2 / 6));
   o.lidars = std::clamp(static_cast<int>(std::lround(floor_m2 / kFloorPerLidar_m2)), 3, 8);

@@ -71,6 +71,37 @@ void print_by_site(const std::vector<Row>& rows) {
   }
 }
 
+void print_methods(const std::vector<Method>& methods) {
+  fmt::print("\nside by side: share within 10 deg and 0.3 m / within 3 deg and 0.1 m\n{:>10} {:>6}", "overlap",
+             "spots");
+  for (const Method& m : methods) fmt::print(" {:>20}", m.name);
+  const auto line = [&](const std::string& name, double low, double high) {
+    const auto in_band = [&](const Row& r) { return r.overlap >= low && r.overlap < high; };
+    const auto n = std::ranges::count_if(methods.front().rows, in_band);
+    fmt::print("\n{:>10} {:>6}", name, n);
+    for (const Method& m : methods) {
+      const auto share = [&](double deg, double metres) {
+        const auto good =
+            std::ranges::count_if(m.rows, [&](const Row& r) { return in_band(r) && r.within(deg, metres); });
+        return n == 0 ? 0.0 : 100.0 * static_cast<double>(good) / static_cast<double>(n);
+      };
+      fmt::print(" {:>10.0f} / {:<3.0f}    ", share(10, 0.3), share(3, 0.1));
+    }
+  };
+  for (int d = 0; d < 10; ++d)
+    line(fmt::format("{:.1f}-{:.1f}", d / 10.0, (d + 1) / 10.0), d / 10.0, (d + 1) / 10.0 + (d == 9));
+  line("over 0.3", 0.3, 2);
+  for (const double share : {0.5, 0.9}) {
+    fmt::print("\n{:>17}", share == 0.5 ? "median ms" : "p90 ms");
+    for (const Method& m : methods) {
+      std::vector<double> latency;
+      for (const Row& r : m.rows) latency.push_back(r.reply.latency_ms);
+      fmt::print(" {:>20.1f}", percentile(latency, share));
+    }
+  }
+  fmt::print("\n");
+}
+
 Consistency consistency_of(const std::vector<Row>& rows) {
   constexpr double kLow = 1.237, kHigh = 14.449;  // 95 % of chi-squared with six degrees of freedom
   std::vector<double> nees;
@@ -83,7 +114,9 @@ Consistency consistency_of(const std::vector<Row>& rows) {
   if (nees.empty()) return {};
   const auto inside = std::ranges::count_if(nees, [](double v) { return v >= kLow && v <= kHigh; });
   const auto count = static_cast<double>(nees.size());
-  return {nees.size(), percentile(nees, 0.5), sum / count, static_cast<double>(inside) / count};
+  const auto not_beyond = std::ranges::count_if(nees, [](double v) { return v <= kHigh; });
+  return {nees.size(), percentile(nees, 0.5), sum / count, static_cast<double>(inside) / count,
+          static_cast<double>(not_beyond) / count};
 }
 
 void print_consistency(const std::vector<Row>& rows) {

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "client/src/engine.hpp"
+#include "common/codec/codec.hpp"
+#include "common/registration/normals.hpp"
 #include "proto-tests/replay/truth.hpp"
 #include "server/localization/localizer.hpp"
 #include "server/localization/session.hpp"
@@ -124,12 +126,22 @@ class Trial {
     alone.cold = !options_.evidence;
     alone.extra.bytes.clear();
     Device& d = *devices_[device];
+    if (options_.peer_every > 0 && spots_++ % options_.peer_every == 0) keep_for_peers(asked, overlap);
     add_row(options_.evidence ? weighed(alone, *d.searching, false, overlap, asked) : localizer_.locate(alone),
             true, overlap, asked);
     const SpotReply reply = options_.evidence ? weighed(asked.request, *d.live, true, overlap, asked)
                                               : localizer_.locate(asked.request);
     d.engine.add_reply(reply);
     add_row(reply, false, overlap, asked);
+  }
+
+  /// The very clouds that the localizer compares.
+  void keep_for_peers(const Asked& asked, double overlap) {
+    const auto snapshot = cloud_.nearest(asked.request.match_stamp_ns());
+    const auto lpc = decode(asked.request.lpc);
+    if (!snapshot || !lpc) return;
+    result_.problems.push_back({with_normals(*lpc, Eigen::Vector3f::Zero()), (*snapshot)->target()->cloud,
+                                asked.T_map_sensor_true, overlap, result_.rows.size()});
   }
 
   /// The session's answer; what it rested on is kept.
@@ -181,6 +193,7 @@ class Trial {
   std::vector<std::unique_ptr<Device>> devices_;
   std::vector<std::deque<DepthImage>> recent_;  ///< per LiDAR, newest last
   TrialResult result_;
+  int spots_ = 0;
 };
 
 }  // namespace

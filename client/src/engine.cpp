@@ -23,9 +23,10 @@ namespace {
 constexpr int kSilentIntervals = 3;
 constexpr std::size_t kFewestSurfels = 60;    // a frame with fewer cannot be matched
 constexpr std::size_t kMostLocalPoses = 250;  // a message holds 256; older ones of a long silence are left out
+constexpr std::size_t kLpcPoints = 4000;      // 6 to 7 kB
 constexpr StampNs kSubmapAge =
     from_ms(10'000);                         // since a surface was seen; odometry drifts by millimetres in that
-constexpr std::size_t kSubmapPoints = 2000;  // about 5 kB
+constexpr std::size_t kSubmapPoints = 2000;  // about 3 kB
 constexpr double kOdomSdM = 0.01, kOdomSdRad = 0.005, kOdomSdShare = 0.01;  // floor, and share of path and turn
 
 OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
@@ -139,7 +140,8 @@ Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cl
   auto cloud =
       points != nullptr ? Result<Cloud>(*points) : depth_to_cloud(image, options.camera, depth_options());
   if (!cloud) return tl::unexpected(cloud.error());
-  auto lpc = encode(voxel_downsample(*cloud, options.voxel_size_m), {.voxel_size_m = options.voxel_size_m});
+  const Cloud thin = voxel_downsample(*cloud, options.voxel_size_m, kLpcPoints);
+  auto lpc = encode(thin, {.voxel_size_m = options.voxel_size_m});
   if (!lpc) return tl::unexpected(lpc.error());
   SpotRequest r;
   r.client_id = options.client_id;

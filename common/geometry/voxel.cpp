@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <compare>
 #include <optional>
 #include <utility>
 
@@ -55,6 +56,19 @@ class CellTable {
   std::vector<std::uint32_t> values_;
 };
 
+constexpr int kBlockBits = 2;  // blocks of 4 x 4 x 4 voxels
+constexpr std::size_t kVoxelsOfBlock = 64;
+
+/// A voxel in the order in which a block's voxels are kept: every other one first, as on a chessboard, then the
+/// fuller ones.
+struct Ranked {
+  std::uint64_t block;
+  std::uint32_t odd;
+  float emptiness;
+  std::uint32_t index;
+  auto operator<=>(const Ranked&) const = default;
+};
+
 /// Sums of the points in each occupied voxel, in the order in which the voxels are first entered.
 struct Voxels {
   Voxels(const Cloud& cloud, float inverse) : table(cloud.size()) {
@@ -92,30 +106,32 @@ Cloud voxel_downsample(const Cloud& cloud, double voxel_size_m) {
   return thin;
 }
 
-Cloud fullest_voxels(const Cloud& cloud, double voxel_size_m, std::size_t most_points) {
+Cloud voxel_downsample(const Cloud& cloud, double voxel_size_m, std::size_t most_points) {
   assert(voxel_size_m > 0);
-  static const std::array<Eigen::Vector3i, 6> kFaces{Eigen::Vector3i{1, 0, 0}, Eigen::Vector3i{-1, 0, 0},
-                                                     Eigen::Vector3i{0, 1, 0}, Eigen::Vector3i{0, -1, 0},
-                                                     Eigen::Vector3i{0, 0, 1}, Eigen::Vector3i{0, 0, -1}};
   const Voxels voxels(cloud, static_cast<float>(1.0 / voxel_size_m));
-  std::vector<std::pair<float, std::uint32_t>> by_share;  // how much fuller its fullest neighbour is
-  by_share.reserve(voxels.sums.size());
+  std::vector<Ranked> ranked;
+  ranked.reserve(voxels.sums.size());
   for (std::uint32_t i = 0; i < voxels.sums.size(); ++i) {
-    float fullest = 0;
-    if (voxels.sums.size() > most_points)
-      for (const Eigen::Vector3i& face : kFaces)
-        if (const auto j = voxels.table.find(cell_key(voxels.sums[i].cell + face)))
-          fullest = std::max(fullest, voxels.sums[*j].count);
-    by_share.emplace_back(fullest / voxels.sums[i].count, i);
+    const Sum& sum = voxels.sums[i];
+    const Eigen::Vector3i block = sum.cell.unaryExpr([](int c) { return c >> kBlockBits; });
+    ranked.push_back({cell_key(block), static_cast<std::uint32_t>(sum.cell.sum() & 1), 1 / sum.count, i});
   }
-  if (by_share.size() > most_points) {
-    std::nth_element(by_share.begin(), by_share.begin() + static_cast<std::ptrdiff_t>(most_points),
-                     by_share.end());
-    by_share.resize(most_points);
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::uint32_t> place(ranked.size(), 0);      // within the block, from 0
+  std::array<std::size_t, kVoxelsOfBlock + 1> of_place{};  // how many voxels have it
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    if (i > 0 && ranked[i].block == ranked[i - 1].block) place[i] = place[i - 1] + 1;
+    ++of_place[place[i]];
   }
+  std::size_t allowed = 0, kept = 0;
+  while (allowed < kVoxelsOfBlock && kept + of_place[allowed] <= most_points) kept += of_place[allowed++];
   Cloud thin;
-  thin.points.reserve(by_share.size());
-  for (const auto& [share, i] : by_share) thin.points.push_back(voxels.sums[i].point / voxels.sums[i].count);
+  thin.points.reserve(kept);
+  for (std::size_t i = 0; i < ranked.size(); ++i)
+    if (place[i] < allowed) {
+      const Sum& sum = voxels.sums[ranked[i].index];
+      thin.points.push_back(sum.point / sum.count);
+    }
   return thin;
 }
 

@@ -22,9 +22,9 @@ namespace liloc {
 /// dropped.
 [[nodiscard]] Cloud voxel_downsample(const Cloud& cloud, double voxel_size_m);
 
-/// The same, without normals, and where there are more than `most_points`, those that hold most: a voxel goes
-/// first the fewer points it holds beside its fullest face neighbour, where the surface lies that merely grazes
-/// it. What stays covers all surfaces, about one voxel thick. In no particular order.
-[[nodiscard]] Cloud fullest_voxels(const Cloud& cloud, double voxel_size_m, std::size_t most_points);
+/// The same without normals, and at most `most_points` of it: each block of 4 x 4 x 4 voxels keeps no more than
+/// so many, spread evenly. Large faces are thinned; what is rare, such as edges, legs and far corners, stays.
+/// In the order of blocks.
+[[nodiscard]] Cloud voxel_downsample(const Cloud& cloud, double voxel_size_m, std::size_t most_points);
 
 }  // namespace liloc

@@ -80,7 +80,7 @@ struct Options {
   std::size_t queue_frames = 4;       ///< depth frames that may wait; the oldest is dropped for the newest
   std::string trace_folder;           ///< online.tum, trajectory.tum, spots.csv, local.csv; empty: none
   std::optional<Pose> T_base_sensor;  ///< with external odometry: the sensor on what the odometry moves
-  bool submap = true;                 ///< requests carry what stands around as well (about 5 kB), unless `cold`
+  bool submap = true;                 ///< requests carry what stands around as well (about 3 kB), unless `cold`
   double cpu_share = 1;               ///< of one core, 0.02..1; frames are left out to keep it
 };
 

@@ -85,6 +85,15 @@ TEST_P(CodecSeeds, VoxelTakesFewerBytesThanDracoOfTheSameError) {
   EXPECT_EQ(voxel->bytes, again->bytes);
 }
 
+TEST_P(CodecSeeds, AThinnedFrameTakesTwoBytesAPoint) {  // what a client sends of a frame
+  const Cloud cloud = voxel_downsample(room_view(GetParam(), 120'000), 0.05, 4000);
+  const auto encoded = encode(cloud);
+  ASSERT_TRUE(encoded);
+  EXPECT_GT(cloud.size(), 3'000U);
+  EXPECT_LT(encoded->bytes.size(), cloud.size() * 21 / 10);
+  EXPECT_LT(rmse_m(*decode(*encoded), cloud), 0.0015);
+}
+
 // Any cloud is taken, not only one of voxel means.
 TEST_P(CodecSeeds, VoxelKeepsManyPointsOfOneVoxelAndAnyPlace) {
   std::mt19937 random(GetParam());

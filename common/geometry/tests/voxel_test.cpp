@@ -51,7 +51,38 @@ TEST_P(VoxelLaw, KeepsTheMeanAndUnitNormals) {
   for (const auto& n : voxel_downsample(cloud, 0.5).normals) EXPECT_NEAR(n.norm(), 1.0F, 1e-5F);
 }
 
+TEST_P(VoxelLaw, ALimitKeepsASpreadSubset) {
+  const Cloud cloud = random_cloud(GetParam(), 20'000);
+  const Cloud all = voxel_downsample(cloud, 0.25);
+  for (const std::size_t most : {std::size_t{1}, all.size() / 3, all.size() - 1}) {
+    Cloud some = voxel_downsample(cloud, 0.25, most), sorted = all;
+    EXPECT_LE(some.size(), most);
+    sort_points(some.points);
+    sort_points(sorted.points);
+    EXPECT_TRUE(std::includes(sorted.points.begin(), sorted.points.end(), some.points.begin(),
+                              some.points.end(), [](const auto& a, const auto& b) {
+                                return std::lexicographical_compare(a.data(), a.data() + 3, b.data(),
+                                                                    b.data() + 3);
+                              }));
+  }
+  EXPECT_EQ(voxel_downsample(cloud, 0.25, all.size()).size(), all.size());
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, VoxelLaw, testing::Range(1U, 9U));
+
+TEST(Voxel, ALimitThinsTheWallAndLeavesThePole) {
+  Cloud cloud;
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) cloud.points.emplace_back(0.05F * i + 0.02F, 0.05F * j + 0.02F, 3.02F);
+  for (int j = 0; j < 40; ++j) cloud.points.emplace_back(1.52F, 0.05F * j + 0.02F, 1.52F);
+  const Cloud thin = voxel_downsample(cloud, 0.05, 1900);
+  const auto pole = [](const Eigen::Vector3f& p) { return p.z() < 2; };
+  EXPECT_EQ(std::count_if(thin.points.begin(), thin.points.end(), pole), 40);
+  EXPECT_GT(thin.size(), 1800U);
+  for (const auto& p : cloud.points)  // of the wall every other voxel stays: none is farther than its neighbour
+    EXPECT_TRUE(std::any_of(thin.points.begin(), thin.points.end(),
+                            [&](const Eigen::Vector3f& q) { return (p - q).norm() < 0.051F; }));
+}
 
 TEST(Voxel, NonFinitePointsAreDropped) {
   Cloud cloud;

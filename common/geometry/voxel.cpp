@@ -4,8 +4,8 @@
 #include <array>
 #include <bit>
 #include <cassert>
-#include <compare>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace liloc {
@@ -66,7 +66,9 @@ struct Ranked {
   std::uint32_t odd;
   float emptiness;
   std::uint32_t index;
-  auto operator<=>(const Ranked&) const = default;
+  bool operator<(const Ranked& o) const {
+    return std::tie(block, odd, emptiness, index) < std::tie(o.block, o.odd, o.emptiness, o.index);
+  }
 };
 
 /// Sums of the points in each occupied voxel, in the order in which the voxels are first entered.

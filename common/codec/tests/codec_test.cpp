@@ -50,14 +50,17 @@ float longest_side_m(const Cloud& cloud) {
   return box.sizes().maxCoeff();
 }
 
+/// Of every fifth point, which is enough to tell.
 double rmse_m(const Cloud& from, const Cloud& to) {
+  constexpr std::size_t kEvery = 5;
   double sum = 0;
-  for (const auto& p : from.points) {
+  for (std::size_t i = 0; i < from.size(); i += kEvery) {
+    const auto& p = from.points[i];
     float best = std::numeric_limits<float>::max();
     for (const auto& q : to.points) best = std::min(best, (p - q).squaredNorm());
     sum += static_cast<double>(best);
   }
-  return std::sqrt(sum / static_cast<double>(from.size()));
+  return std::sqrt(sum / static_cast<double>((from.size() + kEvery - 1) / kEvery));
 }
 
 class CodecSeeds : public testing::TestWithParam<unsigned> {};

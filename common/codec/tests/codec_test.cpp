@@ -202,7 +202,7 @@ TEST(Codec, RefusesAnUnknownCodec) {
 }
 
 TEST(Codec, RefusesAVoxelStreamOfAnotherLength) {
-  const auto encoded = encode(room_view(7, 2'000));
+  const auto encoded = encode(room_view(7, 300));
   ASSERT_TRUE(encoded);
   EncodedCloud longer = *encoded;
   longer.bytes.push_back(0);
@@ -217,13 +217,13 @@ TEST(Codec, RefusesAVoxelStreamOfAnotherLength) {
 class Hostile : public testing::TestWithParam<CloudCodec> {};
 INSTANTIATE_TEST_SUITE_P(Codecs, Hostile, testing::ValuesIn(kAll));
 
-// 10 000 damaged streams of each codec: refused, or decoded to finite points within bounds; none crashes.
+// 4 000 damaged streams of each codec: refused, or decoded to finite points within bounds; none crashes.
 TEST_P(Hostile, DamagedStreamsAreRefusedOrBounded) {
   std::mt19937 random(20'000);
   const auto encoded = encode(room_view(6, 800), {.codec = GetParam()});
   ASSERT_TRUE(encoded);
   int refused = 0;
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < 4'000; ++i) {
     EncodedCloud mutant = *encoded;
     for (unsigned flips = 1 + random() % 8; flips > 0; --flips)
       mutant.bytes[random() % mutant.bytes.size()] = static_cast<std::uint8_t>(random());
@@ -236,7 +236,7 @@ TEST_P(Hostile, DamagedStreamsAreRefusedOrBounded) {
     ASSERT_LE(decoded->size(), kMaxCodecPoints);
     for (const auto& p : decoded->points) ASSERT_LE(p.cwiseAbs().maxCoeff(), kMaxCoordinate_m);
   }
-  EXPECT_GT(refused, 2'500);
+  EXPECT_GT(refused, 1'000);
 }
 
 // Noise behind a valid header: what a sender of nonsense can make the server do.
@@ -244,7 +244,7 @@ TEST(Codec, NoiseBehindAVoxelHeaderIsBounded) {
   std::mt19937 random(20'001);
   const auto encoded = encode(room_view(8, 800));
   ASSERT_TRUE(encoded);
-  for (int i = 0; i < 2'000; ++i) {
+  for (int i = 0; i < 500; ++i) {
     EncodedCloud noise = *encoded;
     noise.bytes.resize(kVoxelHeaderBytes + random() % 4'000);
     for (std::size_t at = kVoxelHeaderBytes; at < noise.bytes.size(); ++at)

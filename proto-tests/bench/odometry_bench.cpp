@@ -1,212 +1,134 @@
-// Runs the client's engine without a server over recordings and says how far its odometry drifts.
-//   liloc_odometry_bench [--local cloud|inertial|dead-reckoning] [--no-imu] [--every N] [--frames]
-//                        [--focal-factor F] REC...
-// --focal-factor: wrong intrinsics, to see what they do.
-// Drift is the judge's figure: error of the relative pose from the first to the last frame, in per cent of the
-// path.
+// The client's odometry without a server: how far it drifts over recordings, and how its registration does on
+// pairs of frames beside PCL's GICP and any peer.
+//
+//   liloc_odometry_bench REC... [--voxel 0.05] [--no-imu] [--local cloud|inertial|dead-reckoning] [--every N]
+//   liloc_odometry_bench REC... --pairs 20 [--dump-pairs DIR] [--peer-results FILE.csv]...
+//
+// Recordings of simulated sites come from `liloc sim`. A peer reads DIR (pair_bench.hpp says what is in it),
+// runs on one thread, and its CSV joins the table. The guess of a pair is the motion of the same number of
+// frames before, by LiLoc's odometry, the same for all.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <ctime>
-#include <fstream>
-#include <optional>
-#include <string>
-#include <vector>
+#include <CLI/CLI.hpp>
+#include <deque>
 
-#include "client/src/engine.hpp"
+#include "client/src/image_thinning.hpp"
 #include "common/base/log.hpp"
-#include "common/recording/recording.hpp"
+#include "common/geometry/depth.hpp"
+#include "proto-tests/bench/drift_bench.hpp"
+#include "proto-tests/bench/pair_bench.hpp"
 
-namespace liloc {
+namespace liloc::bench {
 namespace {
 
 struct Options {
-  LocalMethod local = LocalMethod::cloud;
-  bool frames = false, use_imu = true;
-  int every = 1;
-  double focal_factor = 1;
+  DriftOptions drift;
+  bool frames = false;
+  std::size_t pairs = 0;
+  std::string dump;
+  std::vector<std::string> peers;
   std::vector<std::string> recordings;
 };
 
-struct Run {
-  std::vector<FrameResult> frames;
-  std::vector<Pose> truth;
-  int requests = 0;
-  double worst_up_deg = -1;
-  std::size_t lpc_bytes = 0, extra_bytes = 0;
-  double cpu_s = 0;                 ///< of the engine, reading of files left out
-  std::optional<double> package_j;  ///< of the whole processor in the time of the run, where the kernel tells
-};
+constexpr int kGaps[] = {2, 10};
 
-/// CPU time of this process so far; the engine has no other thread.
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-constexpr const char* kEnergyCounter = "/sys/class/powercap/intel-rapl:0/energy_uj";
-
-/// Energy counter of the processor; empty without the right or the means to read it.
-std::optional<double> package_joules() {
-  std::ifstream file(kEnergyCounter);
-  double microjoules = 0;
-  if (!(file >> microjoules)) return std::nullopt;
-  return 1e-6 * microjoules;
-}
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return NAN;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
-}
-
-Result<Run> run_device(const DeviceRecording& device, const Options& options) {
-  const auto truth = read_ground_truth(device);
-  if (!truth) return tl::unexpected(truth.error());
-  EngineOptions eo;
-  eo.client_id = device.info.id;
-  eo.camera = device.info.camera;
-  eo.local = options.local;
-  if (!device.imu.empty() && options.use_imu) eo.T_imu_sensor = device.info.T_imu_sensor;
-  eo.still_seconds = device.info.still_seconds;
-  eo.camera.fx *= options.focal_factor;
-  eo.camera.fy *= options.focal_factor;
-  Engine engine(eo);
-  Run run;
-  const auto joules_before = package_joules();
-  std::size_t next_imu = 0;
-  for (std::size_t i = 0; i < device.depth.size(); i += static_cast<std::size_t>(options.every)) {
-    const auto image = read_depth(device.depth[i], device.info.camera);
+/// The clouds that the odometry saw, with its poses and the true ones.
+Result<std::vector<OdometryFrame>> frames_of(const DeviceRecording& device, const DriftRun& run) {
+  const Camera& camera = device.info.camera;
+  const int factor = thinning_for(camera);
+  std::vector<OdometryFrame> frames;
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    const auto image = read_depth(device.depth[i], camera);
     if (!image) return tl::unexpected(image.error());
-    const double cpu_before = cpu_seconds();
-    for (; options.use_imu && next_imu < device.imu.size() &&
-           device.imu[next_imu].stamp_ns <= image->stamp_ns + from_ms(5);
-         ++next_imu)
-      if (const auto ok = engine.add_imu(device.imu[next_imu]); !ok) return tl::unexpected(ok.error());
-    auto frame = engine.add_depth(*image);
-    run.cpu_s += cpu_seconds() - cpu_before;
-    if (!frame) return tl::unexpected(frame.error());
-    run.frames.push_back(std::move(*frame));
-    run.truth.push_back((*truth)[i].T_map_sensor);
-    if (const auto request = engine.take_request()) {
-      ++run.requests;
-      run.lpc_bytes += request->lpc.bytes.size();
-      run.extra_bytes += request->extra.bytes.size();
-      if (request->up_sensor) {
-        const Eigen::Vector3d up_true = run.truth.back().linear().transpose() * Eigen::Vector3d::UnitZ();
-        run.worst_up_deg = std::max(
-            run.worst_up_deg, degrees(std::acos(std::clamp(up_true.dot(*request->up_sensor), -1.0, 1.0))));
-      }
-    }
+    auto cloud = depth_to_cloud(thinned(*image, factor), thinned(camera, factor));
+    if (!cloud) return tl::unexpected(cloud.error());
+    frames.push_back({std::move(*cloud), run.frames[i].T_odom_sensor, run.truth[i]});
   }
-  const auto joules_after = package_joules();
-  if (joules_before && joules_after && *joules_after > *joules_before)
-    run.package_j = *joules_after - *joules_before;
-  return run;
+  return frames;
 }
 
-void report(const std::string& name, const Run& run, const Options& options) {
-  const auto& f = run.frames;
-  double path = 0, good = 0;
-  std::vector<double> latency, step_mm, residual_mm;
-  const auto error = [&](std::size_t i, std::size_t j) {
-    return (run.truth[i].inverse() * run.truth[j]).inverse() *
-           (f[i].T_odom_sensor.inverse() * f[j].T_odom_sensor);
-  };
-  int icp = 0, ransac = 0, guess = 0, dull = 0;
-  for (std::size_t i = 0; i < f.size(); ++i) {
-    latency.push_back(f[i].latency_ms);
-    if (f[i].residual_m > 0) residual_mm.push_back(1e3 * f[i].residual_m);
-    icp += f[i].method == "icp" || f[i].method == "inertial";
-    ransac += f[i].method == "ransac";
-    guess += f[i].method == "guess";
-    dull += !f[i].informative;
-    if (options.frames) {
-      const Pose E = error(0, i);
-      fmt::print("{:4d} {:8} inf {} seg {} err {:.1f} mm {:.3f} deg\n", i, f[i].method, f[i].informative,
-                 f[i].odom_segment, 1e3 * E.translation().norm(), degrees(rotation_angle_rad(E)));
-    }
-    if (i == 0) continue;
-    path += distance_m(run.truth[i], run.truth[i - 1]);
-    const Pose E = error(i - 1, i);
-    step_mm.push_back(1e3 * E.translation().norm());
-    good += degrees(rotation_angle_rad(E)) <= 3 && E.translation().norm() <= 0.1;
+/// Drift of every device; their frames are kept where pairs are asked for.
+Status run_recording(const std::string& root, const Options& options,
+                     std::deque<std::vector<OdometryFrame>>& kept, std::vector<FramePair>& pairs) {
+  const auto recording = open_recording(root);
+  if (!recording) return tl::unexpected(recording.error());
+  for (const DeviceRecording& device : recording->devices) {
+    const std::string name = recording->root.filename().string() + "/" + device.info.id;
+    const auto run = run_drift(device, options.drift);
+    if (!run) return tl::unexpected(run.error());
+    print_drift(name, *run, options.frames);
+    if (options.pairs == 0) continue;
+    auto frames = frames_of(device, *run);
+    if (!frames) return tl::unexpected(frames.error());
+    kept.push_back(std::move(*frames));
+    for (const int gap : kGaps)
+      for (FramePair& pair : choose_pairs(recording->root.filename().string() + "-" + device.info.id,
+                                          kept.back(), gap, options.pairs))
+        pairs.push_back(std::move(pair));
   }
-  const Pose end = error(0, f.size() - 1);
-  const double seconds = std::max(to_seconds(f.back().stamp_ns - f.front().stamp_ns), 1e-3);
-  fmt::print(
-      "{:28} path {:5.2f} m  end {:5.1f} mm {:5.2f} %  {:5.2f} deg  pairs {:.3f} (median {:.1f} mm)  "
-      "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B  "
-      "around {} B  "
-      "residual {:.1f} mm  {:.1f} ms of CPU per second{}\n",
-      name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
-      degrees(rotation_angle_rad(end)), good / static_cast<double>(f.size() - 1), quantile(step_mm, 0.5),
-      quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess, dull, f.back().odom_segment + 1,
-      run.worst_up_deg, run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)),
-      run.extra_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
-      1e3 * run.cpu_s / seconds,
-      run.package_j ? fmt::format("  {:.2f} J per second, reading of files included", *run.package_j / seconds)
-                    : "");
+  return {};
 }
 
-int run_all(const Options& options) {
-  if (!package_joules())
-    fmt::print(stderr, "energy is not measured: {} cannot be read (no RAPL, or for root alone)\n",
-               kEnergyCounter);
-  for (const std::string& root : options.recordings) {
-    const auto recording = open_recording(root);
-    if (!recording) {
-      fmt::print(stderr, "{}\n", recording.error().message);
-      return 1;
-    }
-    for (const DeviceRecording& device : recording->devices) {
-      const auto run = run_device(device, options);
-      if (!run) {
-        fmt::print(stderr, "{}\n", run.error().message);
-        return 1;
-      }
-      report(recording->root.filename().string() + "/" + device.info.id, *run, options);
-    }
+Status run_pairs(const std::vector<FramePair>& pairs, const Options& options) {
+  if (!options.dump.empty())
+    if (auto ok = dump_pairs(pairs, options.dump); !ok) return ok;
+  std::vector<PairResult> results;
+  for (const FramePair& pair : pairs) {
+    results.push_back(by_liloc(pair, options.drift.voxel_m));
+    results.push_back(by_pcl_gicp(pair, options.drift.voxel_m));
   }
-  return 0;
+  for (const std::string& file : options.peers) {
+    const auto peer = read_peer(pairs, file);
+    if (!peer) return tl::unexpected(peer.error());
+    results.insert(results.end(), peer->begin(), peer->end());
+  }
+  print_pairs(results);
+  return {};
+}
+
+Status run_all(const Options& options) {
+  if (const std::string why = energy_obstacle(); !why.empty())
+    fmt::print(stderr, "energy is not measured: {}\n", why);
+  std::deque<std::vector<OdometryFrame>> kept;
+  std::vector<FramePair> pairs;
+  for (const std::string& root : options.recordings)
+    if (auto ok = run_recording(root, options, kept, pairs); !ok) return ok;
+  return pairs.empty() ? Status{} : run_pairs(pairs, options);
 }
 
 }  // namespace
-}  // namespace liloc
+}  // namespace liloc::bench
 
 int main(int argc, char** argv) {
-  liloc::Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    if (arg == "--frames") {
-      options.frames = true;
-    } else if (arg == "--verbose") {
-      liloc::log::set_sink([](liloc::log::Level, std::string_view line) { fmt::print(stderr, "{}\n", line); });
-    } else if (arg == "--no-imu") {
-      options.use_imu = false;
-    } else if (arg == "--focal-factor" && i + 1 < argc) {
-      options.focal_factor = std::atof(argv[++i]);
-    } else if (arg == "--every" && i + 1 < argc) {
-      options.every = std::max(1, std::atoi(argv[++i]));
-    } else if (arg == "--local" && i + 1 < argc) {
-      const auto method = liloc::local_method_from(argv[++i]);
-      if (!method) {
-        fmt::print(stderr, "{}\n", method.error().message);
-        return 2;
-      }
-      options.local = *method;
-    } else {
-      options.recordings.push_back(arg);
-    }
-  }
-  if (options.recordings.empty()) {
-    fmt::print(stderr,
-               "usage: liloc_odometry_bench [--local METHOD] [--no-imu] [--every N] [--frames] [--verbose] "
-               "[--focal-factor F] REC...\n");
+  using namespace liloc;
+  bench::Options options;
+  std::string local = "cloud";
+  bool verbose = false, no_imu = false;
+  CLI::App app("Drift of the client's odometry, and its registration on pairs of frames");
+  app.add_option("REC", options.recordings, "Recordings with ground truth")->required();
+  app.add_option("--local", local, "cloud, inertial or dead-reckoning")->capture_default_str();
+  app.add_flag("--no-imu", no_imu, "As if the devices had none");
+  app.add_option("--every", options.drift.every, "Only every so manieth frame")->check(CLI::PositiveNumber);
+  app.add_option("--focal-factor", options.drift.focal_factor, "Wrong intrinsics, to see what they do");
+  app.add_option("--voxel", options.drift.voxel_m, "Metres")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 0.5));
+  app.add_flag("--frames", options.frames, "A line for each frame");
+  app.add_flag("--verbose", verbose, "What the odometry logs");
+  app.add_option("--pairs", options.pairs, "So many pairs of frames per device and gap, beside PCL's GICP");
+  app.add_option("--dump-pairs", options.dump, "Folder for the pairs' clouds and guesses");
+  app.add_option("--peer-results", options.peers, "CSV files that join the table");
+  CLI11_PARSE(app, argc, argv);
+  const auto method = local_method_from(local);
+  if (!method || (options.pairs > 0 && options.drift.every > 1)) {
+    fmt::print(stderr, "{}\n",
+               method ? "--pairs needs every frame: leave --every out" : method.error().message);
     return 2;
   }
-  return liloc::run_all(options);
+  options.drift.local = *method;
+  options.drift.use_imu = !no_imu;
+  if (verbose) log::set_sink([](log::Level, std::string_view line) { fmt::print(stderr, "{}\n", line); });
+  const auto done = bench::run_all(options);
+  if (!done) fmt::print(stderr, "{}\n", done.error().message);
+  return done ? 0 : 1;
 }

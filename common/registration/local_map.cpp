@@ -195,21 +195,24 @@ LocalMap::View LocalMap::compare(const Pose& T_map_sensor, const DepthImage& ima
   return view;
 }
 
-const LocalMap::Cell* LocalMap::find(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const {
+const LocalMap::Cell* LocalMap::find(const Eigen::Vector3f& p, const Eigen::Vector3f& normal, int reach) const {
   const Eigen::Vector3i base = cell_of(p - Eigen::Vector3f::Constant(0.5F / inverse_), inverse_);
   const Cell* best = nullptr;
-  float nearest = 2.25F / (inverse_ * inverse_);
-  for (int k = 0; k < 8; ++k) {
-    const std::uint32_t index = lookup(cell_key(base + Eigen::Vector3i(k & 1, k >> 1 & 1, k >> 2)));
-    if (index == kNone) continue;
-    const Cell& cell = cells_[index];
-    if (cell.surfel.count == 0) continue;
-    const float squared = (cell.surfel.mean - p).squaredNorm();
-    if (squared < nearest && cell.surfel.normal.dot(normal) > kSameSide) {
-      nearest = squared;
-      best = &cell;
-    }
-  }
+  const float farthest = (static_cast<float>(reach) + 0.5F) / inverse_;
+  float nearest = farthest * farthest;
+  for (int z = 1 - reach; z <= reach; ++z)
+    for (int y = 1 - reach; y <= reach; ++y)
+      for (int x = 1 - reach; x <= reach; ++x) {
+        const std::uint32_t index = lookup(cell_key(base + Eigen::Vector3i(x, y, z)));
+        if (index == kNone) continue;
+        const Cell& cell = cells_[index];
+        if (cell.surfel.count == 0) continue;
+        const float squared = (cell.surfel.mean - p).squaredNorm();
+        if (squared < nearest && cell.surfel.normal.dot(normal) > kSameSide) {
+          nearest = squared;
+          best = &cell;
+        }
+      }
   return best;
 }
 

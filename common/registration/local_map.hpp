@@ -47,9 +47,10 @@ class LocalMap {
   [[nodiscard]] View compare(const Pose& T_map_sensor, const DepthImage& image, const Camera& camera,
                              double max_range_m) const;
 
-  /// The nearest surfel among the eight cells around `p` whose normal is within 45 degrees of `normal`, both in
-  /// the map frame; null when there is none.
-  [[nodiscard]] const Cell* find(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const;
+  /// The nearest surfel among the cells up to `reach` cells from `p` on each side whose normal is within 45
+  /// degrees of `normal`, both in the map frame; null when there is none. Reach 1 looks into eight cells, 2
+  /// into 64.
+  [[nodiscard]] const Cell* find(const Eigen::Vector3f& p, const Eigen::Vector3f& normal, int reach = 1) const;
   /// 1 for a surfel that has stood the test of time, `kYoungWeight` before.
   [[nodiscard]] float trust(const Cell& cell, StampNs now_ns) const;
 

@@ -8,6 +8,7 @@
 namespace liloc {
 namespace {
 
+constexpr double kUsualRangeM = 2.0;  // at which a turn shows as a shift
 using Matrix6f = Eigen::Matrix<float, 6, 6>;
 using Vector6f = Eigen::Matrix<float, 6, 1>;
 
@@ -48,12 +49,12 @@ std::vector<Source> choose_sources(const std::vector<Surfel>& frame, const ScanM
 }
 
 void find_pairs(const LocalMap& map, const std::vector<Source>& sources, const Pose& T, StampNs now_ns,
-                std::vector<Pair>& pairs) {
+                int reach, std::vector<Pair>& pairs) {
   pairs.clear();
   const Eigen::Isometry3f Tf = T.cast<float>();
   for (const Source& s : sources) {
     const Eigen::Vector3f lever = Tf.linear() * s.mean, p = lever + Tf.translation();
-    const LocalMap::Cell* cell = map.find(p, Tf.linear() * s.normal);
+    const LocalMap::Cell* cell = map.find(p, Tf.linear() * s.normal, reach);
     if (cell == nullptr) continue;
     const float trust = map.trust(*cell, now_ns) * std::max(0.1F, cell->surfel.flatness);
     const Surfel& plane = cell->surfel;
@@ -72,14 +73,17 @@ struct Normal {
 /// Half-width of the kernel, squared: what noise and a guess of covariance `doubt` let the residual be. Of a
 /// wall that is little, along a direction that is in doubt it is much; a person who walked off is outside of
 /// both.
-float kernel_squared(const Pair& p, const Matrix6f& doubt, const Vector6f& J, const ScanMatchOptions& options) {
-  const auto low = static_cast<float>(options.kernel_min_m), high = static_cast<float>(options.kernel_max_m);
+float kernel_squared(const Pair& p, const Matrix6f& doubt, const Vector6f& J, bool vague,
+                     const ScanMatchOptions& options) {
+  const auto low = static_cast<float>(options.kernel_min_m);
+  const auto high = static_cast<float>(vague ? options.kernel_vague_m : options.kernel_max_m);
   const auto deviations = static_cast<float>(options.kernel_deviations);
   const float expected = p.sd * p.sd + J.dot(doubt * J);
   return std::clamp(deviations * deviations * expected, low * low, high * high);
 }
 
-Normal accumulate(const std::vector<Pair>& pairs, const Matrix6d& doubt, const ScanMatchOptions& options) {
+Normal accumulate(const std::vector<Pair>& pairs, const Matrix6d& doubt, bool vague,
+                  const ScanMatchOptions& options) {
   Normal n;
   double total = 0;
   const Matrix6f doubtf = doubt.cast<float>();
@@ -87,7 +91,7 @@ Normal accumulate(const std::vector<Pair>& pairs, const Matrix6d& doubt, const S
   for (const Pair& p : pairs) {
     J.head<3>() = p.lever.cross(p.normal);
     J.tail<3>() = p.normal;
-    const float scaled = p.residual * p.residual / kernel_squared(p, doubtf, J, options);
+    const float scaled = p.residual * p.residual / kernel_squared(p, doubtf, J, vague, options);
     const float robust = 1.0F / ((1 + scaled) * (1 + scaled));
     const double share = static_cast<double>(p.weight) * robust;
     const double weight = share / (static_cast<double>(p.sd) * p.sd);
@@ -184,11 +188,16 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
   match.information = certainty;
   std::vector<Pair> pairs;
   pairs.reserve(sources.size());
+  double share = 1;
   for (match.iterations = 0; match.iterations < options.max_iterations && !match.settled; ++match.iterations) {
-    find_pairs(map, sources, match.T_map_sensor, now_ns, pairs);
+    const MotionGuess doubt(match.T_map_sensor, share * guess.covariance);
+    const bool vague = doubt.sd_m() + kUsualRangeM * doubt.sd_rad() > options.vague_m;
+    // What the guess may still be off shrinks with each step; while that is much, planes are looked for farther
+    // away.
+    share *= vague ? 0.5 : 0.25;
+    find_pairs(map, sources, match.T_map_sensor, now_ns, vague ? 2 : 1, pairs);
     if (pairs.size() < 6) break;
-    // Each step halves what the guess may still be off.
-    Normal n = accumulate(pairs, guess.covariance / (1 << std::min(2 * match.iterations, 20)), options);
+    Normal n = accumulate(pairs, doubt.covariance, vague, options);
     drop_unobserved(n, options, match);
     add_prior(n, guess, certainty, match.T_map_sensor);
     match.information = n.H;

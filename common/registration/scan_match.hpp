@@ -31,6 +31,8 @@ struct ScanMatchOptions {
   double kernel_deviations = 3;  ///< of what noise and the guess explain, where a surfel begins to count less
   double kernel_min_m = 0.02;    ///< never narrower: the map's own surfels err by as much at edges
   double kernel_max_m = 0.10;    ///< nor wider
+  double vague_m = 0.08;         ///< a guess that may shift points by more looks two cells far for planes,
+  double kernel_vague_m = 0.25;  ///< with a kernel as wide as this
   double independent_surfels = 250;  ///< neighbours err together: no more than so many count as independent
   double observed_noise =
       3;  ///< a direction with less information than so many times what noisy normals feign,

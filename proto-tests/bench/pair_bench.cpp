@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "client/src/relocate.hpp"
 #include "common/base/stamp.hpp"
 #include "common/registration/scan_match.hpp"
 
@@ -13,6 +14,7 @@ namespace liloc::bench {
 namespace {
 
 constexpr double kGoodRad = 3 / 57.29577951308232, kGoodM = 0.1;
+constexpr double kPoorOverlap = 0.5;  // below which the place is looked for by features, as the odometry does
 constexpr double kGuessSdRad = 0.05, kGuessSdM = 0.05;  // of constant velocity, per two frames
 
 double quantile(std::vector<double> values, double q) {
@@ -43,12 +45,17 @@ PairResult by_liloc(const FramePair& pair, double voxel_m) {
   map.insert(Pose::Identity(),
              extract_surfels(pair.target->cloud_sensor, Eigen::Vector3f::Zero(), surfel_options), 1);
   const double doubt = pair.gap / 2.0;
-  const auto match = match_scan(
-      map, extract_surfels(pair.source->cloud_sensor, Eigen::Vector3f::Zero(), surfel_options),
+  const auto source = extract_surfels(pair.source->cloud_sensor, Eigen::Vector3f::Zero(), surfel_options);
+  auto match = match_scan(
+      map, source,
       {pair.T_target_source_guess, std::min(0.3, kGuessSdRad * doubt), std::min(0.3, kGuessSdM * doubt)}, 2);
+  if (match && match->overlap < kPoorOverlap) {
+    const auto found = relocate(map, source, 2, 1);
+    if (!found.empty() && found.front().overlap > match->overlap) match = found.front();
+  }
   const Pose T = match ? match->T_map_sensor : pair.T_target_source_guess;
-  return {"LiLoc scan match", pair.gap, distance_m(T, pair.truth()), angle_between_rad(T, pair.truth()),
-          watch.elapsed_ms()};
+  return {"LiLoc scan match, features", pair.gap, distance_m(T, pair.truth()),
+          angle_between_rad(T, pair.truth()), watch.elapsed_ms()};
 }
 
 void print_pairs(const std::vector<PairResult>& results) {

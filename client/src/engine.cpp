@@ -231,6 +231,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.T_odom_sensor = step.T_odom_sensor;
   frame.odom_segment = step.segment;
   frame.residual_m = step.residual_m;
+  frame.observed = step.observed;
   inputs.note(spread.fault, step.residual_m, step.strain);
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   frame.latency_ms = watch.elapsed_ms();

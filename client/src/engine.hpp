@@ -50,6 +50,9 @@ struct FrameResult {
   std::uint32_t odom_segment = 0;
   std::optional<Pose> T_map_sensor;  ///< where the device is, once an answer was verified
   double residual_m = 0;             ///< of the match with the local map; 0: none
+  /// Share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1:
+  /// beside a bare wall it is near 0 along the wall, and the pose follows the guess there. All 0 for a guess.
+  Vector6d observed = Vector6d::Zero();
 };
 
 enum class Tracking { searching, tracking, coasting };  ///< coasting: located once, the server is silent

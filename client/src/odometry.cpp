@@ -72,6 +72,9 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
   step.T_odom_sensor = match.T_map_sensor;
   step.overlap = match.overlap;
   step.residual_m = match.rmse_m;
+  const Eigen::Matrix3d R = match.T_map_sensor.linear();
+  step.observed.head<3>() = (R.transpose() * match.observed.topLeftCorner<3, 3>() * R).diagonal();
+  step.observed.tail<3>() = (R.transpose() * match.observed.bottomRightCorner<3, 3>() * R).diagonal();
   const Matrix6d covariance = match.information.inverse();
   step.sd_rad = std::sqrt(covariance.diagonal().head<3>().maxCoeff());
   step.sd_m = std::sqrt(covariance.diagonal().tail<3>().maxCoeff());

@@ -31,8 +31,11 @@ struct OdometryStep {
   std::string method;  ///< "first", "icp", "ransac", "inertial", "guess"
   bool converged = true;
   std::uint32_t segment = 0;
-  double overlap = 0;           ///< of the match; 0 for a guess
-  double residual_m = 0;        ///< of the match, root mean square; 0 for a guess
+  double overlap = 0;     ///< of the match; 0 for a guess
+  double residual_m = 0;  ///< of the match, root mean square; 0 for a guess
+  /// Share of a motion along each axis of the sensor that the scene showed, [rotation; translation], 0 (the
+  /// pose follows the guess) .. 1; ScanMatch::observed.
+  Vector6d observed = Vector6d::Zero();
   double strain = 0;            ///< between IMU and registration (InertialFilter::strain); 0 without
   double sd_rad = 0, sd_m = 0;  ///< of the motion since the previous frame
 };

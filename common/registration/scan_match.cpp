@@ -127,7 +127,7 @@ void drop_unobserved(Normal& n, const ScanMatchOptions& options, ScanMatch& matc
     const Vector6d v = solver.eigenvectors().col(i);
     keep += v * v.transpose();
   }
-  match.observed = keep.diagonal();
+  match.observed = keep;
   if (match.unobserved == 0) return;
   const Matrix6d project = unit.cwiseInverse().asDiagonal() * keep * unit.asDiagonal();
   n.H = project * n.H * project.transpose();

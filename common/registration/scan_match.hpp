@@ -44,8 +44,9 @@ struct ScanMatch {
   /// Of the scene and the prior, [rotation; translation], map axes about the sensor's position.
   Matrix6d information = Matrix6d::Zero();
   int unobserved = 0;  ///< directions left to the guess (0..6)
-  /// Share of a motion along each axis that the scene shows, 0 (the guess decides) .. 1; map axes.
-  Vector6d observed = Vector6d::Zero();
+  /// Projector onto what the scene shows, map axes about the sensor: along a unit motion u, u^T observed u is
+  /// the share that was measured, 0 (the guess decides) .. 1. One radian counts as two metres.
+  Matrix6d observed = Matrix6d::Zero();
   double overlap = 0;  ///< share of the used surfels with a plane within three sensor deviations, 0..1
   double paired = 0;   ///< share of the used surfels with any plane near, 0..1
   double rmse_m = 0;   ///< distance to the planes over the overlap

@@ -124,7 +124,8 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
       degrees(rotation_angle_rad(end)), good / static_cast<double>(f.size() - 1), quantile(step_mm, 0.5),
       1e3 * jump_m, quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess, dull,
       f.back().odom_segment + 1, run.worst_up_deg,
-      run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
+      run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)),
+      run.extra_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
       1e3 * run.cpu_s / seconds,
       run.package_j ? fmt::format("  {:.2f} J per second, reading of files included", *run.package_j / seconds)
                     : "");

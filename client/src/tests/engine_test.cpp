@@ -95,6 +95,22 @@ TEST(Engine, NamesHowEachPoseWasFound) {
   EXPECT_EQ(cloud.step(true).method, "guess");
 }
 
+TEST(Engine, TellsWhichAxesTheFrameShowed) {
+  Walker furnished(engine_options());
+  furnished.step();
+  EXPECT_GT(furnished.step().observed.minCoeff(), 0.99);
+  EXPECT_EQ(furnished.step(true).observed.maxCoeff(), 0);  // a guess
+
+  Engine engine(engine_options());
+  FrameResult frame;
+  for (int i = 0; i < 5; ++i)
+    frame =
+        *engine.add_depth(scene::render(scene::corridor(), scene::looking({0.02 * i, 1, 1.2}, 1.5707963, 0.4),
+                                        scene::small_camera(), stamp_of(i), 0.003));
+  EXPECT_LT(frame.observed[3], 0.1);  // sensor x: along the wall
+  EXPECT_GT(frame.observed[5], 0.9);  // sensor z: towards it
+}
+
 TEST(Engine, ABlockedCameraIsBridgedAndAskedAboutAfterwards) {
   Walker walker(with_imu());
   const Pose first = walker.step().T_odom_sensor;

@@ -47,6 +47,7 @@ TEST_P(ScanMatchLaw, FindsTheWayBackFromADisturbedGuess) {
   EXPECT_LT(angle_between_rad(found->T_map_sensor, T_second), 0.005);
   EXPECT_GT(found->overlap, 0.8);
   EXPECT_EQ(found->unobserved, 0);
+  EXPECT_LT((found->observed - Matrix6d::Identity()).norm(), 1e-9);
 }
 
 TEST_P(ScanMatchLaw, MovingMapAndGuessMovesTheAnswerEqually) {
@@ -91,6 +92,51 @@ TEST(ScanMatch, ADirectionThatTheSceneDoesNotShowFollowsTheGuess) {
   EXPECT_NEAR(found->T_map_sensor.translation().x(), 0.06, 0.01);  // along the wall: the guess
   EXPECT_NEAR(found->T_map_sensor.translation().y(), 1.0, 0.006);  // towards it: the scan
   EXPECT_NEAR(found->T_map_sensor.translation().z(), 1.2, 0.006);
+  EXPECT_GE(found->unobserved, 1);
+  EXPECT_LT(found->observed(3, 3), 0.1);  // along the wall
+  EXPECT_GT(found->observed(4, 4), 0.9);
+  EXPECT_GT(found->observed(5, 5), 0.9);
+}
+
+TEST(ScanMatch, AGuessThatTheNeighboursDoubtIsStillCorrelatedWithWhatTheSceneShows) {
+  const auto room = corridor();
+  const Pose T = looking({0, 1, 1.2}, 1.5707963, 0.4);
+  LocalMap map;
+  map.insert(T, surfels_of(room, T, 1, 0.003), 1);
+  Pose guess = T;
+  guess.translation().y() += 0.04;
+  MotionGuess doubtful(guess, 0.005, 0.05);  // who is off towards the wall is off by as much along it
+  doubtful.covariance(3, 4) = doubtful.covariance(4, 3) = 0.95 * 0.05 * 0.05;
+  const auto found = match_scan(map, surfels_of(room, T, 2, 0.003), doubtful, 2);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->T_map_sensor.translation().y(), 1.0, 0.006);
+  EXPECT_NEAR(found->T_map_sensor.translation().x(), -0.038, 0.01);
+}
+
+TEST(ScanMatch, APersonWhoWalksOffDoesNotTakeASureGuessAlong) {
+  auto room = corridor();
+  const Pose T = looking({0, 1, 1.2}, 1.5707963, 0.4);
+  room.furniture.push_back({{-0.4, 1.8, 0}, {0.1, 2.1, 1.8}});  // nothing else shows motion along the wall
+  LocalMap map;
+  for (int i = 0; i < 4; ++i) map.insert(T, surfels_of(room, T, from_ms(300.0 * i), 0.004), from_ms(300.0 * i));
+  room.furniture.back() = {{-0.33, 1.8, 0}, {0.17, 2.1, 1.8}};  // 1 m/s
+  const auto found = match_scan(map, surfels_of(room, T, from_ms(970), 0.004), {T, 0.001, 0.004}, from_ms(970));
+  ASSERT_TRUE(found);
+  EXPECT_LT(distance_m(found->T_map_sensor, T), 0.006);
+}
+
+TEST(ScanMatch, AVagueGuessIsMended) {
+  const auto room = furnished_room(2);
+  const Pose T = looking({2.6, 2.2, 1.2}, 1.4, 0.2);
+  LocalMap map;
+  map.insert(T, surfels_of(room, T, 1, 0.004), 1);
+  const Pose T_second = disturbed(T, 5, 0.1, 0.1);
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Pose guess = disturbed(T_second, seed, 0.06, 0.2);
+    const auto found = match_scan(map, surfels_of(room, T_second, 2, 0.004), {guess, 0.1, 0.2}, 2);
+    ASSERT_TRUE(found);
+    EXPECT_LT(distance_m(found->T_map_sensor, T_second), 0.015) << "seed " << seed;
+  }
 }
 
 TEST(ScanMatch, WithoutAMapOrAFrameItIsAnError) {

@@ -43,51 +43,56 @@ std::string marked(const std::string& name, bool is_default) {
 }
 
 void sweep_cold(const std::vector<EvidenceRow>& rows) {
-  print_heading("One spot alone", "margin over the runner-up, share that agrees");
+  print_heading("One spot alone", "margin over the runner-up, share seen, share of it that agrees");
   const VerifyOptions standard;
-  for (const double margin : {0.15, 0.3, 0.45, 0.6, 0.75})
-    for (const double agree : {0.3, 0.45, 0.6}) {
-      VerifyOptions o;
-      o.conclusive_margin = margin;
-      o.conclusive_agree = agree;
-      print_line(marked(fmt::format("{:.2f}, {:.2f}", margin, agree),
-                        margin == standard.conclusive_margin && agree == standard.conclusive_agree),
-                 rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
-                   if (r.live || !r.evidence.own) return std::nullopt;
-                   return Outcome{conclusive(r.evidence, o), r.own_right};
-                 });
-    }
+  for (const double margin : {0.15, 0.45, 0.75})
+    for (const double agree : {0.3, 0.45})
+      for (const double overlap : {0.97, 0.985, 0.99}) {
+        VerifyOptions o;
+        o.conclusive_margin = margin;
+        o.conclusive_agree = agree;
+        o.conclusive_overlap = overlap;
+        print_line(marked(fmt::format("{:.2f}, {:.2f}, {:.3f}", margin, agree, overlap),
+                          margin == standard.conclusive_margin && agree == standard.conclusive_agree &&
+                              overlap == standard.conclusive_overlap),
+                   rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
+                     if (r.live || !r.evidence.own) return std::nullopt;
+                     return Outcome{conclusive(r.evidence, o), r.own_right};
+                   });
+      }
 }
 
 void sweep_searching(const std::vector<EvidenceRow>& rows) {
-  print_heading("Several spots, not yet located", "lead per spot, spots that fit");
+  print_heading("Several spots, not yet located",
+                "lead per spot, spots that fit, share of ceiling points that agree");
   const VerifyOptions standard;
-  for (const double lead : {0.0, 0.04, 0.08, 0.12, 0.2, 0.3})
-    for (const int spots : {3, 4, 5}) {
-      VerifyOptions o;
-      o.lead_per_spot = lead;
-      o.spots = spots;
-      print_line(marked(fmt::format("{:.2f}, {}", lead, spots),
-                        lead == standard.lead_per_spot && spots == standard.spots),
-                 rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
-                   if (r.live || !r.evidence.best) return std::nullopt;
-                   return Outcome{confirmed(r.evidence, o).has_value(), r.best_right};
-                 });
-    }
+  for (const double lead : {0.0, 0.08, 0.2})
+    for (const int spots : {3, 4})
+      for (const double agree : {0.90, 0.93, 0.96, 0.98}) {
+        VerifyOptions o;
+        o.lead_per_spot = lead;
+        o.spots = spots;
+        o.verified_map_agree = agree;
+        print_line(marked(fmt::format("{:.2f}, {}, {:.2f}", lead, spots, agree),
+                          lead == standard.lead_per_spot && spots == standard.spots &&
+                              agree == standard.verified_map_agree),
+                   rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
+                     if (r.live || !r.evidence.best) return std::nullopt;
+                     return Outcome{confirmed(r.evidence, o).has_value(), r.best_right};
+                   });
+      }
 }
 
 void sweep_following(const std::vector<EvidenceRow>& rows) {
-  print_heading("Following a verified pose",
-                "ceiling and device points that agree, largest standard deviation");
+  print_heading("Following a verified pose", "share of ceiling points that agree, largest standard deviation");
   const VerifyOptions standard;
-  for (const double agree : {0.90, 0.93, 0.95, 0.97, 0.98})
-    for (const double sd_m : {0.02, 0.04, 0.08}) {
+  for (const double agree : {0.90, 0.93, 0.95, 0.96, 0.97, 0.98})
+    for (const double sd_m : {0.01, 0.02, 0.08}) {
       VerifyOptions o;
-      o.tracks.fits_map_agree = agree;
-      o.tracks.fits_overlap = std::max(agree, standard.tracks.fits_overlap);
+      o.verified_map_agree = agree;
       o.verified_sd_m = sd_m;
       print_line(marked(fmt::format("{:.2f}, {:.2f} m", agree, sd_m),
-                        agree == standard.tracks.fits_map_agree && sd_m == standard.verified_sd_m),
+                        agree == standard.verified_map_agree && sd_m == standard.verified_sd_m),
                  rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
                    if (!r.live || !r.followed() || !r.evidence.best) return std::nullopt;
                    return Outcome{holds(r.evidence, o), r.best_right};

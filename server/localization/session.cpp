@@ -134,8 +134,8 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
            reply);
 }
 
-/// Refines the predicted pose and weighs the two; true when free space bears the answer out. Otherwise the
-/// prediction is the better answer.
+/// Refines the predicted pose and weighs the two; true when that verifies it. Where free space contradicts the
+/// refinement the prediction is the better answer.
 bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* reply) {
   const Pose T_before_now = T_odom_sensor_.inverse() * request.T_odom_sensor;
   T_odom_sensor_ = request.T_odom_sensor;
@@ -149,21 +149,19 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
   evidence_ = {};
   evidence_.best = here;
   evidence_.stayed = same_place(here.T_map_sensor(), predicted, verify_.tracks.gate);
-  const bool good = holds(evidence_, verify_, /*unsure=*/true);
+  const bool good = follows(evidence_, verify_);
   if (good) estimate_ = fused(*estimate_, estimate_of(spot, here));
   evidence_.best_estimate = *estimate_;
   report(here, *estimate_, last_margin_, reply);
-  return good;
+  return holds(evidence_, verify_);
 }
 
 void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
                               SpotReply* reply) {
-  const bool good = follow(request, *spot, reply);
-  followed_ = good;
-  weak_in_a_row_ = good ? 0 : weak_in_a_row_ + 1;
-  const bool verified = holds(evidence_, verify_);
-  conclude(verified ? SpotStatus::verified : SpotStatus::provisional,
-           verified ? Reason::confirmed : Reason::weak, reply);
+  followed_ = follow(request, *spot, reply);
+  weak_in_a_row_ = followed_ ? 0 : weak_in_a_row_ + 1;
+  conclude(followed_ ? SpotStatus::verified : SpotStatus::provisional,
+           followed_ ? Reason::confirmed : Reason::weak, reply);
   // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that
   // was lifted and put elsewhere must not be believed for long.
   if (++spots_since_search_ >= verify_.research_every || weak_in_a_row_ >= 2) {

@@ -27,9 +27,13 @@ std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& o
   return led && holds(evidence, options) ? evidence.chain : std::nullopt;
 }
 
-bool holds(const Evidence& evidence, const VerifyOptions& options, bool unsure) {
-  return evidence.best && evidence.stayed && fits(*evidence.best, options.tracks) &&
-         (unsure || sure(evidence.best_estimate, options));
+bool holds(const Evidence& evidence, const VerifyOptions& options) {
+  return follows(evidence, options) && evidence.best->judgement.map_agree >= options.verified_map_agree &&
+         sure(evidence.best_estimate, options);
+}
+
+bool follows(const Evidence& evidence, const VerifyOptions& options) {
+  return evidence.best && evidence.stayed && fits(*evidence.best, options.tracks);
 }
 
 }  // namespace liloc

@@ -16,9 +16,10 @@ struct VerifyOptions {
   double lead_per_spot = 0.08;  ///< of the best track over the second, over the spots in memory
   double lead_over_fitting =
       0.25;  ///< the same over a second that nothing contradicts: a room like from two places
-  double conclusive_margin = 0.45;    ///< of one spot alone: score over the runner-up's ...
-  double conclusive_agree = 0.45;     ///< ... share of device points on seen surfaces ...
-  double conclusive_overlap = 0.985;  ///< ... and of those judged, how many agree
+  double conclusive_margin = 0.45;   ///< of one spot alone: score over the runner-up's ...
+  double conclusive_agree = 0.45;    ///< ... share of device points on seen surfaces ...
+  double conclusive_overlap = 0.99;  ///< ... and of those judged, how many agree
+  double verified_map_agree = 0.96;  ///< of several spots: least share of agreeing ceiling points
   double verified_sd_rad = radians(2.0), verified_sd_m = 0.08;  ///< most, in any direction
   double locked_sd_rad = radians(1.0), locked_sd_m = 0.05;      ///< least, to hold a refinement near its start
   double prior_residual_sd_m = 0.05;                            ///< of a pair of it
@@ -47,7 +48,9 @@ struct Evidence {
 [[nodiscard]] bool conclusive(const Evidence& evidence, const VerifyOptions& options);
 /// Whether several spots decide: confirmed or corrected.
 [[nodiscard]] std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options);
-/// Whether a pose that was followed from a verified one still holds. `unsure` allows a wide covariance.
-[[nodiscard]] bool holds(const Evidence& evidence, const VerifyOptions& options, bool unsure = false);
+/// Whether a pose that was followed is still verified.
+[[nodiscard]] bool holds(const Evidence& evidence, const VerifyOptions& options);
+/// Whether it may be followed further, if only provisionally: nothing speaks against it.
+[[nodiscard]] bool follows(const Evidence& evidence, const VerifyOptions& options);
 
 }  // namespace liloc

@@ -42,12 +42,12 @@ bool verified(const EvidenceRow& row) {
   return conclusive(row.evidence, options) || confirmed(row.evidence, options);
 }
 
-/// Three offices and a hall; the law has room for other sites, and fails when covariances are off by a factor
-/// of two.
+/// A corridor that looks nearly the same after half a turn, two offices and a hall. The laws have room for
+/// other sites; the first fails when covariances are off by a factor of two.
 class SpotBench : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    for (const std::uint64_t seed : {110U, 112U, 114U, 118U}) {
+    for (const std::uint64_t seed : {8U, 110U, 112U, 114U}) {
       auto stage = simulated_stage(seed, 8);
       ASSERT_TRUE(stage) << "seed " << seed << ": " << stage.error().message;
       TrialOptions options;

@@ -103,7 +103,10 @@ std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& sp
   evidence_ = gathered(*spot, found);
   last_margin_ = evidence_.margin;
   const bool alone = !followed_ && conclusive(evidence_, verify_);  // never outvotes a track that still holds
-  if (alone) evidence_.best = evidence_.own, evidence_.best_estimate = evidence_.own_estimate;
+  if (alone) {
+    evidence_.best = evidence_.own;
+    evidence_.best_estimate = evidence_.own_estimate;
+  }
   const auto why = alone ? std::optional(Reason::conclusive) : confirmed(evidence_, verify_);
   if (!why) return why;
   // A track that holds has more behind it than this spot's own search; elsewhere, the search is right.

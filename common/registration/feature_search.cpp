@@ -73,7 +73,7 @@ float field_score(const ScoreField& field, const std::vector<Eigen::Vector3f>& p
                   const Eigen::Isometry3f& T, int least, float floor) {
   int sum = 0, seen = 0;
   for (const auto& p : points) {
-    sum += std::max(least, field.at(T * p));
+    sum += std::max(least, field.at(T * p, ScoreField::kAny));
     if (++seen == 60 && static_cast<float>(sum) < 0.6F * floor * 60) return -1e9F;
   }
   return static_cast<float>(sum) / static_cast<float>(std::max(seen, 1));
@@ -86,7 +86,7 @@ std::vector<Candidate> ransac(const ScoreField& field, const std::vector<Eigen::
   std::vector<Candidate> best;
   if (matches.size() < 3) return best;
   const auto edge_ratio = static_cast<float>(options.edge_ratio);
-  const int least = options.free_space ? ScoreField::kFree : 0;
+  const int least = options.free_space ? -ScoreField::kSurface : 0;
   std::mt19937_64 rng(seed);
   const auto worse = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
   float floor = 0;

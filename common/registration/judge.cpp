@@ -5,8 +5,6 @@
 namespace liloc {
 namespace {
 
-constexpr double kConflictWeight = 16.0;
-
 /// The word of all ceiling views on one device point: one that measured a surface there outweighs one that,
 /// past an edge, looked by.
 Sight word_of(const std::vector<SightView>& views, const Eigen::Vector3f& p_map, float tolerance) {
@@ -54,7 +52,7 @@ Counts ceiling_against_device(const Target& target, const SightView& view,
 }  // namespace
 
 Judgement judge(const Target& target, const Query& query, const Cloud& device_points, const Pose& T_map_sensor,
-                double tolerance_m, std::size_t map_stride) {
+                double tolerance_m, std::size_t map_stride, double conflict_weight) {
   Judgement result;
   if (device_points.empty()) return result;
   const auto tolerance = static_cast<float>(tolerance_m);
@@ -62,7 +60,7 @@ Judgement judge(const Target& target, const Query& query, const Cloud& device_po
   const Counts device = device_against_ceiling(target, device_points, T_map_sensor.cast<float>(), tolerance);
   result.agree = device.agree / count;
   result.conflict = device.conflict / count;
-  result.score = result.agree - kConflictWeight * result.conflict;
+  result.score = result.agree - conflict_weight * result.conflict;
   if (query.view.empty()) return result;
   const Counts map =
       ceiling_against_device(target, query.view, T_map_sensor.inverse().cast<float>(), tolerance, map_stride);
@@ -73,7 +71,7 @@ Judgement judge(const Target& target, const Query& query, const Cloud& device_po
   }
   const double medium = std::max<double>(1.0, static_cast<double>(query.medium.size() / map_stride));
   result.map_seen = seen / medium;
-  result.score += (map.agree - kConflictWeight * map.conflict) / medium;
+  result.score += (map.agree - conflict_weight * map.conflict) / medium;
   return result;
 }
 

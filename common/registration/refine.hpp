@@ -4,7 +4,7 @@
 namespace liloc {
 
 struct RefineOptions {
-  double start_distance_m = 0.30;     ///< farther pairs are ignored at first ...
+  double start_distance_m = 0.20;     ///< farther pairs are ignored at first ...
   double end_distance_m = 0.08;       ///< ... and at last
   int sparse_iterations = 10;         ///< few device points against the thinned target: far from the answer
   int coarse_iterations = 6;          ///< thinned clouds, at distances down to twice the end

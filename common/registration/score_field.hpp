@@ -7,40 +7,66 @@
 
 namespace liloc {
 
-/// What a device point is worth at each place of the room: up to +100 on a measured surface, kFree where the
-/// ceiling looked through empty space, 0 where nobody looked. A pose scores by one look-up per device point,
-/// free space included. x runs fastest; `at` outside the field is 0.
+struct FieldOptions {
+  double cell_m = 0.1;
+  double surface_sd_m = 0.08;  ///< how far from a surface its worth reaches, as a Gaussian
+  int free = -10;              ///< worth of space that the ceiling looked through
+  int pad = 0;                 ///< cells of zeros at both ends of a row
+};
+
+/// What a device point is worth at each place of the room: up to kSurface on a measured surface that faces the
+/// same way, the more the rarer such surfaces are at that height (floor is everywhere and says little); 0 where
+/// nobody looked or the surface faces another way; `free` where the ceiling looked through empty space. There
+/// is one plane of such cells per direction that a surface can face, so that a pose scores by one look-up per
+/// device point, normals and free space included. x runs fastest; outside the field all is 0.
 class ScoreField {
  public:
-  static constexpr int kSurface = 100, kFree = -100;
+  static constexpr int kSurface = 15;
+  static constexpr int kAzimuths = 8, kUp = 8, kDown = 9, kDirections = 10;
+  static constexpr int kAny = 10;  ///< surfaces of every direction, all worth kSurface; free space -kSurface
+
+  /// The plane for a surface with this unit normal (map axes).
+  [[nodiscard]] static int plane_of(const Eigen::Vector3f& normal_map);
 
   ScoreField() = default;
-  /// `cloud` in the map frame, at most `cell_m` apart on surfaces.
-  ScoreField(const Cloud& cloud_map, const std::vector<SightView>& views, double cell_m, double surface_sd_m);
+  /// `cloud` in the map frame, at most a cell apart on surfaces; without normals it faces everywhere.
+  ScoreField(const Cloud& cloud_map, const std::vector<SightView>& views, const FieldOptions& options);
 
-  [[nodiscard]] int at(const Eigen::Vector3f& p_map) const {
+  [[nodiscard]] int at(const Eigen::Vector3f& p_map, int plane) const {
     const Eigen::Vector3f q = (p_map - origin_) * inverse_;
     if (!((q.array() >= 0).all() && (q.array() < extent_.array()).all())) return 0;
-    return cells_[index(static_cast<int>(q.x()), static_cast<int>(q.y()), static_cast<int>(q.z()))];
+    return cells_[index(static_cast<int>(q.x()), static_cast<int>(q.y()), static_cast<int>(q.z()), plane)];
   }
+
+  /// Makes free space unknown where `cells` (x fastest, one per cell of a plane) are not 0.
+  void forget_free_space(const std::vector<std::uint8_t>& cells);
 
   [[nodiscard]] bool empty() const { return cells_.empty(); }
   [[nodiscard]] double cell_m() const { return cell_; }
+  [[nodiscard]] int pad() const { return pad_; }
   [[nodiscard]] const Eigen::Vector3f& origin() const { return origin_; }  ///< corner of cell (0,0,0)
   [[nodiscard]] const Eigen::Vector3i& size() const { return size_; }      ///< cells
-  [[nodiscard]] const std::int8_t* row(int y, int z) const { return cells_.data() + index(0, y, z); }
+  /// The cell x = 0 of a row; x may run from -pad to size + pad + 31.
+  [[nodiscard]] const std::int8_t* row(int y, int z, int plane) const {
+    return cells_.data() + index(0, y, z, plane);
+  }
 
  private:
-  [[nodiscard]] std::size_t index(int x, int y, int z) const {
-    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y()) + static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(size_.x()) +
-           static_cast<std::size_t>(x);
+  [[nodiscard]] std::size_t index(int x, int y, int z, int plane) const {
+    const auto row =
+        (static_cast<std::size_t>(plane) * static_cast<std::size_t>(size_.z()) + static_cast<std::size_t>(z)) *
+            static_cast<std::size_t>(size_.y()) +
+        static_cast<std::size_t>(y);
+    return row * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(x + pad_);
   }
   void add_surfaces(const Cloud& cloud_map, double surface_sd_m);
-  void mark_free_space(const std::vector<SightView>& views);
+  void add_surface(const Eigen::Array3f& q_m, const std::vector<int>& planes, double surface_sd_m);
+  void mark_free_space(const std::vector<SightView>& views, int worth);
+  void weigh_surfaces();
 
   double cell_ = 0;
   float inverse_ = 1;
+  int pad_ = 0, stride_ = 0;
   Eigen::Vector3f origin_ = Eigen::Vector3f::Zero(), extent_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
   std::vector<std::int8_t> cells_;

@@ -18,7 +18,7 @@ JudgeOptions judge_options_for(double voxel_size_m) {
   JudgeOptions options;
   const double scale = voxel_size_m / 0.05;
   options.fine_tolerance_m *= scale;
-  options.coarse_tolerance_m = std::max(options.coarse_tolerance_m, 2 * options.fine_tolerance_m);
+  options.sketch_tolerance_m = std::max(options.sketch_tolerance_m, 1.7 * options.fine_tolerance_m);
   options.refine.end_distance_m *= scale;
   options.refine.fit_distance_m *= scale;
   return options;
@@ -28,10 +28,10 @@ std::vector<UpPair> ups_to_try(const SpotProblem& problem) {
   const std::vector<UpHypothesis> planes = find_up(problem.query.medium);
   std::vector<UpPair> ups;
   if (problem.up_sensor) {
-    ups.push_back({*problem.up_sensor, problem.ups_map.front()});
-    const bool contradicted = !planes.empty() && planes.front().confidence > kSure &&
-                              planes.front().up.dot(*problem.up_sensor) < std::cos(kContradicts_rad);
-    if (contradicted) ups.push_back({planes.front().up, problem.ups_map.front()});
+    const bool sure = !planes.empty() && planes.front().confidence > kSure;
+    const bool agree = sure && planes.front().up.dot(*problem.up_sensor) >= std::cos(kContradicts_rad);
+    ups.push_back({*problem.up_sensor, problem.ups_map.front(), agree});
+    if (sure && !agree) ups.push_back({planes.front().up, problem.ups_map.front()});
     return ups;
   }
   for (const UpHypothesis& plane : planes)
@@ -71,15 +71,15 @@ std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector
   const JudgeOptions& options = problem.judging;
   const Target& target = problem.target;
   const Query& query = problem.query;
-  const double sketch_tolerance_m = 0.5 * (options.coarse_tolerance_m + options.fine_tolerance_m);
-  for (Candidate& c : candidates)
-    c.score = judge(target, query, query.sparse, c.T_map_sensor, options.coarse_tolerance_m, 4).score;
   candidates = distinct(std::move(candidates), options.sketch_most);
   RefineOptions sketch = options.refine;
+  sketch.sparse_iterations = 6;
   sketch.coarse_iterations = sketch.fine_iterations = 0;
   for (Candidate& c : candidates) {
     c.T_map_sensor = refine(target, query, c.T_map_sensor, sketch).T_target_source;
-    c.score = judge(target, query, query.sparse, c.T_map_sensor, sketch_tolerance_m, 2).score;
+    c.score = judge(target, query, query.sparse, c.T_map_sensor, options.sketch_tolerance_m, 2,
+                    options.sketch_conflict_weight)
+                  .score;
   }
   std::vector<Hypothesis> refined;
   for (const Candidate& c : distinct(std::move(candidates), options.refine_most))

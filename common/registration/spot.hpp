@@ -14,9 +14,10 @@ namespace liloc {
 
 /// How candidates are weighed; the defaults are for voxels of 0.05 m.
 struct JudgeOptions {
-  double coarse_tolerance_m = 0.12, fine_tolerance_m = 0.05;
-  std::size_t sketch_most = 14;  ///< of the candidates, how many are refined with few points
-  std::size_t refine_most = 5;   ///< of those, how many are refined fully
+  double sketch_tolerance_m = 0.085, fine_tolerance_m = 0.05;
+  double sketch_conflict_weight = 8;  ///< before a pose is refined it may still conflict a little
+  std::size_t sketch_most = 32;       ///< of the candidates, how many are refined with few points
+  std::size_t refine_most = 8;        ///< of those, how many are refined fully
   std::size_t keep = 5;
   RefineOptions refine;
 };
@@ -48,6 +49,7 @@ class Proposer {
 /// A direction of the device's frame and one of the map's that are taken for the same: up.
 struct UpPair {
   Eigen::Vector3d sensor, map;
+  bool borne_out = false;  ///< the device's gravity and the planes it sees agree
 };
 /// What to search with, likeliest first: gravity as the device says, unless the planes it sees contradict, and
 /// what floors, ceilings and walls tell.

@@ -9,7 +9,9 @@
 namespace liloc {
 namespace {
 
-constexpr double kFineField_m = 0.1, kCoarseField_m = 0.2;
+// Sums of the coarse field must fit a byte by eights; at 0.1 m a conflict is meant.
+constexpr FieldOptions kCoarseField{0.2, 0.13, -10, 40};  // padded for devices that see 8 m far
+constexpr FieldOptions kFineField{0.1, 0.08, -40, 0};
 
 /// About `count` points spread evenly in space: the coarsest voxel grid that still has so many, then a random
 /// cut.
@@ -42,8 +44,8 @@ Surfaces::Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_s
 
 void Surfaces::build_fields() const {
   std::call_once(once_, [this] {
-    field_coarse_ = ScoreField(coarse, views_, kCoarseField_m, 0.13);
-    field_fine_ = ScoreField(coarse, views_, kFineField_m, 0.08);
+    field_coarse_ = ScoreField(coarse, views_, kCoarseField);
+    field_fine_ = ScoreField(coarse, views_, kFineField);
   });
 }
 

@@ -40,6 +40,7 @@ class Surfaces {
 struct Target {
   std::shared_ptr<const Surfaces> surfaces;
   std::vector<SightView> views;  ///< empty when two bare clouds are aligned
+  Cloud moving_map = {};         ///< what the ceiling sees move right now, thinned
 
   [[nodiscard]] const Surfaces* operator->() const { return surfaces.get(); }
 };

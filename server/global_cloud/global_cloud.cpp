@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/voxel.hpp"
+
 namespace liloc {
 namespace {
 
@@ -60,13 +62,32 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
   return {};
 }
 
+namespace {
+
+constexpr double kMovingVoxel_m = 0.15;
+
+/// What `still` lacks of `image`.
+Cloud moving_points(DepthImage image, const DepthImage& still, const GlobalLidar& lidar,
+                    const SnapshotOptions& options) {
+  for (std::size_t i = 0; i < image.units.size(); ++i)
+    if (still.units[i] != 0) image.units[i] = 0;
+  const auto cloud_sensor = depth_to_cloud(image, lidar.camera, options.depth);
+  if (!cloud_sensor) return {};
+  return transformed(lidar.T_map_sensor, voxel_downsample(*cloud_sensor, kMovingVoxel_m));
+}
+
+}  // namespace
+
 GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
   const GlobalLidar& info = site_.global_lidars[lidar];
   auto& [background, surfaces, epoch] = watches_[lidar];
+  Cloud moving_map;
   if (!options_.drop_moving) {
     surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);
   } else {
-    image = background.learn(image);
+    DepthImage still = background.learn(image);
+    moving_map = moving_points(image, still, info, options_.snapshot);
+    image = std::move(still);
     if (background.change() == Change::small && image.stamp_ns - epoch_since_ns_ > options_.renew_ns) {
       ++epoch_;
       epoch_since_ns_ = image.stamp_ns;
@@ -76,7 +97,8 @@ GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
       surfaces = std::make_shared<const LidarSurfaces>(background.surfaces(), info, options_.snapshot);
     }
   }
-  return std::make_shared<const LidarFrame>(std::move(image), surfaces, info, options_.snapshot);
+  return std::make_shared<const LidarFrame>(std::move(image), std::move(moving_map), surfaces, info,
+                                            options_.snapshot);
 }
 
 std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame>& frames) {
@@ -143,7 +165,9 @@ void GlobalCloud::prepare() {
     if (frames.empty()) return;
     room = room_of(frames);
   }
-  if (!room->surfaces()->cloud.empty()) (void)room->surfaces()->field_fine();
+  if (room->surfaces()->cloud.empty()) return;
+  (void)room->surfaces()->field_fine();
+  (void)room->described();
 }
 
 }  // namespace liloc

@@ -33,9 +33,13 @@ SightView LidarSurfaces::view() const {
   return view_of(image_, lidar_, options_);
 }
 
-LidarFrame::LidarFrame(DepthImage still, std::shared_ptr<const LidarSurfaces> surfaces,
+LidarFrame::LidarFrame(DepthImage still, Cloud moving_map, std::shared_ptr<const LidarSurfaces> surfaces,
                        const GlobalLidar& lidar, const SnapshotOptions& options)
-    : still_(std::move(still)), surfaces_(std::move(surfaces)), lidar_(lidar), options_(options) {}
+    : still_(std::move(still)),
+      moving_map_(std::move(moving_map)),
+      surfaces_(std::move(surfaces)),
+      lidar_(lidar),
+      options_(options) {}
 
 const SightView& LidarFrame::view() const {
   std::call_once(once_, [this] { view_ = view_of(still_, lidar_, options_); });
@@ -76,7 +80,10 @@ const std::vector<Eigen::Vector3d>& StitchedRoom::ups_map() const {
 const Target& Snapshot::target() const {
   std::call_once(once_, [this] {
     target_.surfaces = room_->surfaces();
-    for (const auto& frame : frames_) target_.views.push_back(frame->view());
+    for (const auto& frame : frames_) {
+      target_.views.push_back(frame->view());
+      append(target_.moving_map, frame->moving_map());
+    }
   });
   return target_;
 }

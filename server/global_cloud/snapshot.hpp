@@ -43,16 +43,19 @@ class LidarSurfaces {
 /// moves.
 class LidarFrame {
  public:
-  LidarFrame(DepthImage still, std::shared_ptr<const LidarSurfaces> surfaces, const GlobalLidar& lidar,
-             const SnapshotOptions& options);
+  /// `moving_map`: what moves in this frame, thinned.
+  LidarFrame(DepthImage still, Cloud moving_map, std::shared_ptr<const LidarSurfaces> surfaces,
+             const GlobalLidar& lidar, const SnapshotOptions& options);
 
   [[nodiscard]] StampNs stamp_ns() const { return still_.stamp_ns; }
   [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
   [[nodiscard]] const std::shared_ptr<const LidarSurfaces>& surfaces() const { return surfaces_; }
   [[nodiscard]] const SightView& view() const;
+  [[nodiscard]] const Cloud& moving_map() const { return moving_map_; }
 
  private:
   const DepthImage still_;
+  const Cloud moving_map_;
   const std::shared_ptr<const LidarSurfaces> surfaces_;
   const GlobalLidar& lidar_;
   const SnapshotOptions options_;

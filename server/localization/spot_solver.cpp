@@ -17,6 +17,12 @@ bool convincing(const std::vector<Hypothesis>& found) {
          margin_of(found) > 0.15;
 }
 
+/// A search with gravity that is borne out needs no search without when it ends here: it has looked at every
+/// place, and what it found contradicts little.
+bool plausible(const std::vector<Hypothesis>& found) {
+  return !found.empty() && found.front().judgement.overlap() > 0.97 && found.front().judgement.agree > 0.2;
+}
+
 /// Merges two lists of hypotheses, best first, one per place.
 std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypothesis>& b) {
   for (const Hypothesis& h : b)
@@ -104,8 +110,9 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
   std::vector<Hypothesis> found;
   for (const UpPair& up : ups_to_try(problem)) {
     found = merged(std::move(found), judge_candidates(problem, GravityProposer(up).propose(problem)));
-    if (convincing(found)) return found;
+    if (up.borne_out && (convincing(found) || plausible(found))) return found;
   }
+  if (convincing(found)) return found;
   return merged(std::move(found),
                 judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem)));
 }

@@ -24,7 +24,8 @@ double lead_needed(const Evidence& evidence, const VerifyOptions& options) {
 std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options) {
   const bool led =
       evidence.supports >= options.spots && evidence.lead_per_spot >= lead_needed(evidence, options);
-  return led && holds(evidence, options) ? evidence.chain : std::nullopt;
+  const bool balance = evidence.best && evidence.best->judgement.score > 0;  // more agrees than contradicts
+  return led && balance && holds(evidence, options) ? evidence.chain : std::nullopt;
 }
 
 bool holds(const Evidence& evidence, const VerifyOptions& options) {

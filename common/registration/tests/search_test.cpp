@@ -73,12 +73,12 @@ TEST(Search, NothingToSearchIsAnEmptyList) {
 TEST(JudgeOptions, FollowTheVoxelSizeFromTheDefaults) {
   const JudgeOptions usual, same = judge_options_for(0.05), fine = judge_options_for(0.03);
   EXPECT_EQ(same.fine_tolerance_m, usual.fine_tolerance_m);
-  EXPECT_EQ(same.coarse_tolerance_m, usual.coarse_tolerance_m);
+  EXPECT_EQ(same.sketch_tolerance_m, usual.sketch_tolerance_m);
   EXPECT_EQ(same.refine.end_distance_m, usual.refine.end_distance_m);
   EXPECT_EQ(same.refine.fit_distance_m, usual.refine.fit_distance_m);
   EXPECT_DOUBLE_EQ(fine.fine_tolerance_m, 0.03);
   EXPECT_DOUBLE_EQ(fine.refine.fit_distance_m, 0.03);
-  EXPECT_GE(judge_options_for(0.08).coarse_tolerance_m, judge_options_for(0.08).fine_tolerance_m);
+  EXPECT_GE(judge_options_for(0.08).sketch_tolerance_m, judge_options_for(0.08).fine_tolerance_m);
 }
 
 Cloud two_walls_and_a_box(unsigned seed) {

@@ -91,7 +91,7 @@ void ScoreField::add_surface(const Eigen::Array3f& q_m, const std::vector<int>& 
         const Eigen::Array3f centre = (Eigen::Array3f(x, y, z) + 0.5F) * cell;
         const float squared = (centre - q_m).square().sum();
         if (squared > reach * reach) continue;
-        const auto value = static_cast<std::int8_t>(kSurface * std::exp(exponent * squared) + 0.5F);
+        const auto value = static_cast<std::int8_t>(std::lround(kSurface * std::exp(exponent * squared)));
         for (const int plane : planes) {
           std::int8_t& held = cells_[index(x, y, z, plane)];
           held = std::max(held, value);

@@ -3,7 +3,7 @@
 add_executable(client_answering_server ${PROJECT_SOURCE_DIR}/client/src/tests/answering_server.cpp)
 target_link_libraries(client_answering_server PRIVATE liloc_warnings liloc::wire)
 liloc_test(NAME client_c_api SOURCES tests/c_api_test.cpp tests/c_api_running_test.cpp
-  tests/c_api_fields_test.cpp NEEDS liloc::client TIMEOUT 60)
+  NEEDS liloc::client TIMEOUT 60)
 target_compile_definitions(client_c_api_test PRIVATE ANSWERING_SERVER="$<TARGET_FILE:client_answering_server>")
 add_dependencies(client_c_api_test client_answering_server)
 

@@ -72,10 +72,11 @@ void sweep_searching(const std::vector<EvidenceRow>& rows) {
         VerifyOptions o;
         o.lead_per_spot = lead;
         o.spots = spots;
-        o.verified_map_agree = agree;
+        o.confirmed_map_agree = agree;
+        o.verified_map_agree = std::min(agree, standard.verified_map_agree);
         print_line(marked(fmt::format("{:.2f}, {}, {:.2f}", lead, spots, agree),
                           lead == standard.lead_per_spot && spots == standard.spots &&
-                              agree == standard.verified_map_agree),
+                              agree == standard.confirmed_map_agree),
                    rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
                      if (r.live || !r.evidence.best) return std::nullopt;
                      return Outcome{confirmed(r.evidence, o).has_value(), r.best_right};

@@ -165,9 +165,7 @@ void GlobalCloud::prepare() {
     if (frames.empty()) return;
     room = room_of(frames);
   }
-  if (room->surfaces()->cloud.empty()) return;
-  (void)room->surfaces()->field_fine();
-  (void)room->described();
+  if (!room->surfaces()->cloud.empty()) (void)room->surfaces()->field_fine();
 }
 
 }  // namespace liloc

@@ -24,7 +24,8 @@ double lead_needed(const Evidence& evidence, const VerifyOptions& options) {
 std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options) {
   const bool led =
       evidence.supports >= options.spots && evidence.lead_per_spot >= lead_needed(evidence, options);
-  const bool balance = evidence.best && evidence.best->judgement.score > 0;  // more agrees than contradicts
+  const bool balance = evidence.best && evidence.best->judgement.score > 0 &&  // more agrees than contradicts
+                       evidence.best->judgement.map_agree >= options.confirmed_map_agree;
   return led && balance && holds(evidence, options) ? evidence.chain : std::nullopt;
 }
 

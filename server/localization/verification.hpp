@@ -19,7 +19,9 @@ struct VerifyOptions {
   double conclusive_margin = 0.45;   ///< of one spot alone: score over the runner-up's ...
   double conclusive_agree = 0.45;    ///< ... share of device points on seen surfaces ...
   double conclusive_overlap = 0.99;  ///< ... and of those judged, how many agree
-  double verified_map_agree = 0.96;  ///< of several spots: least share of agreeing ceiling points
+  double confirmed_map_agree =
+      0.98;                          ///< of several spots: least share of agreeing ceiling points, at first ...
+  double verified_map_agree = 0.96;  ///< ... and once they are believed
   double verified_sd_rad = radians(2.0), verified_sd_m = 0.08;  ///< most, in any direction
   double locked_sd_rad = radians(1.0), locked_sd_m = 0.05;      ///< least, to hold a refinement near its start
   double prior_residual_sd_m = 0.05;                            ///< of a pair of it

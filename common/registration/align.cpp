@@ -58,6 +58,7 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   problem.seed = options.seed;
   problem.threads = options.threads;
   problem.judging = judge_options_for(voxel);
+  problem.judging.refine.start_distance_m = 0.30;  // samples of three features are coarser than a search
   problem.judging.refine_most = problem.judging.keep = 20;
   if (options.gravity) problem.up_sensor = Eigen::Vector3d::UnitZ();
   FeatureSearchOptions features;

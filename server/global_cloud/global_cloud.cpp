@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "common/geometry/voxel.hpp"
-
 namespace liloc {
 namespace {
 
@@ -62,32 +60,17 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
   return {};
 }
 
-namespace {
-
-constexpr double kMovingVoxel_m = 0.15;
-
-/// What `still` lacks of `image`.
-Cloud moving_points(DepthImage image, const DepthImage& still, const GlobalLidar& lidar,
-                    const SnapshotOptions& options) {
-  for (std::size_t i = 0; i < image.units.size(); ++i)
-    if (still.units[i] != 0) image.units[i] = 0;
-  const auto cloud_sensor = depth_to_cloud(image, lidar.camera, options.depth);
-  if (!cloud_sensor) return {};
-  return transformed(lidar.T_map_sensor, voxel_downsample(*cloud_sensor, kMovingVoxel_m));
-}
-
-}  // namespace
-
 GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
   const GlobalLidar& info = site_.global_lidars[lidar];
   auto& [background, surfaces, epoch] = watches_[lidar];
-  Cloud moving_map;
+  DepthImage moving;
   if (!options_.drop_moving) {
     surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);
   } else {
-    DepthImage still = background.learn(image);
-    moving_map = moving_points(image, still, info, options_.snapshot);
-    image = std::move(still);
+    moving = image;
+    image = background.learn(image);
+    for (std::size_t i = 0; i < moving.units.size(); ++i)
+      if (image.units[i] != 0) moving.units[i] = 0;
     if (background.change() == Change::small && image.stamp_ns - epoch_since_ns_ > options_.renew_ns) {
       ++epoch_;
       epoch_since_ns_ = image.stamp_ns;
@@ -97,7 +80,7 @@ GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
       surfaces = std::make_shared<const LidarSurfaces>(background.surfaces(), info, options_.snapshot);
     }
   }
-  return std::make_shared<const LidarFrame>(std::move(image), std::move(moving_map), surfaces, info,
+  return std::make_shared<const LidarFrame>(std::move(image), std::move(moving), surfaces, info,
                                             options_.snapshot);
 }
 

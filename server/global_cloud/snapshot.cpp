@@ -8,6 +8,8 @@
 namespace liloc {
 namespace {
 
+constexpr double kMovingVoxel_m = 0.15;
+
 SightView view_of(const DepthImage& image, const GlobalLidar& lidar, const SnapshotOptions& options) {
   return SightView::from_depth(image, lidar.camera, lidar.T_map_sensor.inverse(), options.view_factor,
                                options.depth.max_range_m);
@@ -33,10 +35,10 @@ SightView LidarSurfaces::view() const {
   return view_of(image_, lidar_, options_);
 }
 
-LidarFrame::LidarFrame(DepthImage still, Cloud moving_map, std::shared_ptr<const LidarSurfaces> surfaces,
+LidarFrame::LidarFrame(DepthImage still, DepthImage moving, std::shared_ptr<const LidarSurfaces> surfaces,
                        const GlobalLidar& lidar, const SnapshotOptions& options)
     : still_(std::move(still)),
-      moving_map_(std::move(moving_map)),
+      moving_(std::move(moving)),
       surfaces_(std::move(surfaces)),
       lidar_(lidar),
       options_(options) {}
@@ -44,6 +46,16 @@ LidarFrame::LidarFrame(DepthImage still, Cloud moving_map, std::shared_ptr<const
 const SightView& LidarFrame::view() const {
   std::call_once(once_, [this] { view_ = view_of(still_, lidar_, options_); });
   return view_;
+}
+
+const Cloud& LidarFrame::moving_map() const {
+  std::call_once(moving_once_, [this] {
+    if (moving_.units.empty()) return;
+    const auto cloud_sensor = depth_to_cloud(moving_, lidar_.camera, options_.depth);
+    if (!cloud_sensor) return log::error("{}: {}", lidar_.id, cloud_sensor.error().message);
+    moving_map_ = transformed(lidar_.T_map_sensor, voxel_downsample(*cloud_sensor, kMovingVoxel_m));
+  });
+  return moving_map_;
 }
 
 const std::shared_ptr<const Surfaces>& StitchedRoom::surfaces() const {

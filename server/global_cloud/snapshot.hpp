@@ -43,24 +43,25 @@ class LidarSurfaces {
 /// moves.
 class LidarFrame {
  public:
-  /// `moving_map`: what moves in this frame, thinned.
-  LidarFrame(DepthImage still, Cloud moving_map, std::shared_ptr<const LidarSurfaces> surfaces,
+  /// `moving`: the pixels that `still` lacks because something moves there; may be empty.
+  LidarFrame(DepthImage still, DepthImage moving, std::shared_ptr<const LidarSurfaces> surfaces,
              const GlobalLidar& lidar, const SnapshotOptions& options);
 
   [[nodiscard]] StampNs stamp_ns() const { return still_.stamp_ns; }
   [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
   [[nodiscard]] const std::shared_ptr<const LidarSurfaces>& surfaces() const { return surfaces_; }
   [[nodiscard]] const SightView& view() const;
-  [[nodiscard]] const Cloud& moving_map() const { return moving_map_; }
+  /// What moves in this frame, thinned.
+  [[nodiscard]] const Cloud& moving_map() const;
 
  private:
-  const DepthImage still_;
-  const Cloud moving_map_;
+  const DepthImage still_, moving_;
   const std::shared_ptr<const LidarSurfaces> surfaces_;
   const GlobalLidar& lidar_;
   const SnapshotOptions options_;
-  mutable std::once_flag once_;
+  mutable std::once_flag once_, moving_once_;
   mutable SightView view_;
+  mutable Cloud moving_map_;
 };
 
 /// The GPC stitched from the surfaces of all LiDARs, with its indices and descriptors, each built by its first

@@ -82,7 +82,7 @@ TEST_F(Live, ReplayOverDdsLocatesBothDevices) {
     EXPECT_GT(local->rows(), 0u);
     if (!kMeasured) continue;
     const auto& online = report["devices"][device]["online"];
-    EXPECT_GT(online["coverage"], 0.3) << report.dump(1);
+    EXPECT_GT(online["coverage"], 0.5) << report.dump(1);
     EXPECT_LT(online["mean_trans_m"], 0.1) << report.dump(1);
     EXPECT_EQ(report["devices"][device]["spots"]["verified_wrong"], 0);
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <exception>
 #include <optional>
 #include <thread>
 
@@ -26,6 +27,14 @@ struct Attachment {
 };
 
 }  // namespace
+
+void guarded(const std::function<void()>& callback) {
+  try {
+    callback();
+  } catch (const std::exception& trouble) {
+    log::error("a callback failed: {}", trouble.what());
+  }
+}
 
 struct Dispatcher::Impl {
   explicit Impl(const Participant& seat) : participant(seat) {}
@@ -100,7 +109,7 @@ void Dispatcher::Impl::run_due_tasks() {
     const auto now = Clock::now();
     if (now < task.due) continue;
     task.due = std::max(task.due + task.period, now);  // after a stall: no burst to catch up
-    task.run();
+    guarded(task.run);
   }
 }
 
@@ -114,7 +123,7 @@ void Dispatcher::Impl::loop() {
     }
     const auto triggered = std::min(static_cast<std::size_t>(count), ready.size());
     for (std::size_t i = 0; i < triggered && !stopping; ++i)
-      if (ready[i] >= 0) attachments[static_cast<std::size_t>(ready[i])].on_ready();
+      if (ready[i] >= 0) guarded(attachments[static_cast<std::size_t>(ready[i])].on_ready);
     if (!stopping) run_due_tasks();
   }
 }

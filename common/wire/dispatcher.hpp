@@ -16,6 +16,10 @@
 
 namespace liloc::wire {
 
+/// Runs a callback. One that throws (out of memory, a library's complaint) must not take the program, nor the
+/// callbacks after it, with it: the log has what it threw.
+void guarded(const std::function<void()>& callback);
+
 class Dispatcher {
  public:
   [[nodiscard]] static Result<std::unique_ptr<Dispatcher>> create(const Participant& participant);

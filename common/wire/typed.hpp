@@ -87,10 +87,8 @@ void take_each(std::int32_t reader, const std::function<void(const T&, const dds
     const dds_return_t count = dds_take(reader, samples.data(), infos.data(), kBatch, kBatch);
     if (count < 0) log::warning("{}", check(count, "take").error().message);
     if (count <= 0) return;
-    for (int i = 0; i < count; ++i)
-      if (infos[static_cast<std::size_t>(i)].valid_data)
-        handle(*static_cast<const T*>(samples[static_cast<std::size_t>(i)]),
-               infos[static_cast<std::size_t>(i)]);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+      if (infos.at(i).valid_data) guarded([&] { handle(*static_cast<const T*>(samples.at(i)), infos.at(i)); });
     dds_return_loan(reader, samples.data(), count);
     taken += count;
   }

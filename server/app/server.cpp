@@ -1,10 +1,10 @@
 #include "server/app/server.hpp"
 
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 
 #include "common/base/log.hpp"
-#include "server/app/site_state.hpp"
 
 namespace liloc {
 namespace {
@@ -22,12 +22,12 @@ StampNs wall_clock_ns() {
 
 Server::Server(const ServerOptions& options, Site site)
     : server_id_(options.service.server_id),
-      state_file_(options.state_file),
       voxel_size_m_(options.localizer.voxel_size_m),
       global_cloud_(std::move(site), global_cloud_options_for(options.localizer)),
-      localizer_(
-          global_cloud_, options.localizer,
-          options.state_file.empty() ? CellBounds{} : open_site_state(options.state_file, voxel_size_m_)) {
+      state_(options.state_file.empty()
+                 ? SiteState{}
+                 : open_site_state(options.state_file, global_cloud_.site(), voxel_size_m_)),
+      localizer_(global_cloud_, options.localizer, state_.learned) {
   saved_ = localizer_.learned();
 }
 
@@ -98,7 +98,11 @@ void Server::keep_prepared(const std::stop_token& stop) {
   std::unique_lock lock(mutex);
   auto save_at = std::chrono::steady_clock::now() + kSavePeriod;
   while (!stop.stop_requested()) {
-    if (service_->clients() > 0) global_cloud_.prepare();
+    try {
+      if (service_->clients() > 0) global_cloud_.prepare();
+    } catch (const std::exception& trouble) {  // the requests will say what is wrong with the room
+      log::error("the room's indices were not made: {}", trouble.what());
+    }
     if (std::chrono::steady_clock::now() >= save_at) {
       save_learned();
       save_at += kSavePeriod;
@@ -110,8 +114,9 @@ void Server::keep_prepared(const std::stop_token& stop) {
 /// At most once a minute, and at the end; only when something was learned.
 void Server::save_learned() {
   auto learned = localizer_.learned();
-  if (state_file_.empty() || learned == saved_) return;
-  if (const Status written = write_site_state(state_file_, voxel_size_m_, *learned); !written)
+  if (state_.file.empty() || learned == saved_) return;
+  if (const Status written = write_site_state(state_.file, global_cloud_.site(), voxel_size_m_, *learned);
+      !written)
     log::warning("{}; or name another with --state", written.error().message);
   saved_ = std::move(learned);
 }

@@ -6,6 +6,7 @@
 
 #include "common/wire/status.hpp"
 #include "server/app/options.hpp"
+#include "server/app/site_state.hpp"
 #include "server/global_cloud/global_cloud.hpp"
 #include "server/ingest/ingest.hpp"
 #include "server/service/service.hpp"
@@ -33,10 +34,10 @@ class Server {
 
   const std::string server_id_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  const std::string state_file_;
   const double voxel_size_m_;
   std::shared_ptr<const CellBounds> saved_;  ///< as the state file has it; of the preparer, then of `stop`
   GlobalCloud global_cloud_;
+  const SiteState state_;  ///< as it was at the start
   Localizer localizer_;
   std::optional<wire::Participant> participant_;  // all below live on it
   std::unique_ptr<wire::StatusPublisher> status_publisher_;

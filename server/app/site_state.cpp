@@ -12,8 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* kFormat = "liloc site state";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr double kAny = 1e9;
+constexpr double kSamePlace_m = 0.5;  // calibrations differ by less
+constexpr int kMostPutAside = 100;
 
 /// A field that the rest of the file is worth nothing without.
 Status expect(const JsonFields& fields, const char* name, double value) {
@@ -22,6 +24,38 @@ Status expect(const JsonFields& fields, const char* name, double value) {
   if (std::abs(*found - value) > 1e-9)
     return fail("{} is {}, this server works with {}; delete the file to learn anew", fields.path(name), *found,
                 value);
+  return {};
+}
+
+Result<Eigen::Vector3d> read_place(const JsonFields& fields) {
+  Eigen::Vector3d place;
+  Eigen::Index i = 0;
+  for (const char* name : {"x", "y", "z"}) {
+    const auto value = fields.number(name, -kAny, kAny);
+    if (!value) return tl::unexpected(value.error());
+    place[i++] = *value;
+  }
+  return place;
+}
+
+/// What a right registration looks like depends on where the ceiling's LiDARs hang.
+Status expect_lidars(const JsonFields& fields, const Site& site) {
+  const std::string where = fields.path("lidars");
+  if (!fields.has("lidars") || !fields.raw("lidars").is_object())
+    return fail("{} is missing or no object; delete the file to learn anew", where);
+  const auto& lidars = fields.raw("lidars");
+  if (lidars.size() != site.global_lidars.size())
+    return fail("{} are {}, this site has {}; the file is another site's: name another", where, lidars.size(),
+                site.global_lidars.size());
+  for (const GlobalLidar& lidar : site.global_lidars) {
+    if (!lidars.contains(lidar.id) || !lidars.at(lidar.id).is_object())
+      return fail("{} lack {}; the file is another site's: name another", where, lidar.id);
+    const auto place = read_place(JsonFields(lidars.at(lidar.id), where + "." + lidar.id));
+    if (!place) return tl::unexpected(place.error());
+    const double moved_m = (*place - lidar.T_map_sensor.translation()).norm();
+    if (moved_m > kSamePlace_m)
+      return fail("{}.{} hung {:.1f} m elsewhere; delete the file to learn anew", where, lidar.id, moved_m);
+  }
   return {};
 }
 
@@ -41,7 +75,7 @@ Status read_cell(const JsonFields& fields, CellBounds* bounds) {
   return {};
 }
 
-Result<CellBounds> parse(const std::string& file, double voxel_size_m) {
+Result<CellBounds> parse(const std::string& file, const Site& site, double voxel_size_m) {
   const auto object = read_json_object(file);
   if (!object) return tl::unexpected(object.error());
   const JsonFields fields(*object, file);
@@ -49,7 +83,7 @@ Result<CellBounds> parse(const std::string& file, double voxel_size_m) {
   if (!format || *format != kFormat) return fail("{}: is no {}; name another file", file, kFormat);
   for (const Status& status :
        {expect(fields, "version", kVersion), expect(fields, "cell_m", CellBounds::kCell_m),
-        expect(fields, "voxel_size_m", voxel_size_m)})
+        expect(fields, "voxel_size_m", voxel_size_m), expect_lidars(fields, site)})
     if (!status) return tl::unexpected(status.error());
   if (!fields.has("cells") || !fields.raw("cells").is_array())
     return fail("{} is missing or no list; delete the file to learn anew", fields.path("cells"));
@@ -64,32 +98,56 @@ Result<CellBounds> parse(const std::string& file, double voxel_size_m) {
   return bounds;
 }
 
+/// A name beside the file that nothing has yet; empty when all are taken.
+std::string free_name(const std::string& file) {
+  std::error_code error;
+  for (int i = 1; i <= kMostPutAside; ++i) {
+    const std::string name = i == 1 ? file + ".unreadable" : fmt::format("{}.unreadable-{}", file, i);
+    if (!fs::exists(fs::symlink_status(name, error))) return name;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string state_file_of(const std::string& site_file) {
   return fs::path(site_file).replace_extension(".state.json").string();
 }
 
-Result<CellBounds> read_site_state(const std::string& file, double voxel_size_m) {
+Result<CellBounds> read_site_state(const std::string& file, const Site& site, double voxel_size_m) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(file, error))) return CellBounds{};
-  return parse(file, voxel_size_m);
+  return parse(file, site, voxel_size_m);
 }
 
-CellBounds open_site_state(const std::string& file, double voxel_size_m) {
-  auto bounds = read_site_state(file, voxel_size_m);
-  if (bounds) return std::move(*bounds);
-  log::warning("{}; starting with nothing learned", bounds.error().message);
+SiteState open_site_state(const std::string& file, const Site& site, double voxel_size_m) {
+  auto bounds = read_site_state(file, site, voxel_size_m);
+  if (bounds) return {std::move(*bounds), file};
   std::error_code error;
-  if (fs::is_regular_file(file, error)) fs::rename(file, file + ".unreadable", error);
+  const std::string aside = free_name(file);
+  if (!aside.empty() && fs::is_regular_file(file, error)) {
+    fs::rename(file, aside, error);
+    if (!error) {
+      log::warning("{}; it is now {}, and learning begins anew", bounds.error().message, aside);
+      return {{}, file};
+    }
+  }
+  log::warning("{}; it stays as it is, and what is learned is kept in memory alone", bounds.error().message);
   return {};
 }
 
-Status write_site_state(const std::string& file, double voxel_size_m, const CellBounds& bounds) {
+Status write_site_state(const std::string& file, const Site& site, double voxel_size_m,
+                        const CellBounds& bounds) {
+  nlohmann::ordered_json lidars = nlohmann::ordered_json::object();
+  for (const GlobalLidar& lidar : site.global_lidars) {
+    const Eigen::Vector3d place = lidar.T_map_sensor.translation();
+    lidars[lidar.id] = {{"x", place.x()}, {"y", place.y()}, {"z", place.z()}};
+  }
   nlohmann::ordered_json object{{"format", kFormat},
                                 {"version", kVersion},
                                 {"cell_m", CellBounds::kCell_m},
                                 {"voxel_size_m", voxel_size_m},
+                                {"lidars", std::move(lidars)},
                                 {"cells", nlohmann::ordered_json::array()}};
   for (const auto& [at, cell] : bounds.cells())
     object["cells"].push_back({{"x", at.x},

@@ -2,6 +2,7 @@
 // What a server learns of its site and keeps beside the site's description, so that a restart loses nothing.
 #include <string>
 
+#include "common/geometry/camera.hpp"
 #include "common/registration/cell_bounds.hpp"
 
 namespace liloc {
@@ -9,15 +10,21 @@ namespace liloc {
 /// The state beside a site file: "x/site.json" has "x/site.state.json".
 [[nodiscard]] std::string state_file_of(const std::string& site_file);
 
-/// Errors name the file, the field and the remedy: not a state of this version, or a value out of range. A file
-/// that does not exist is an empty state.
-[[nodiscard]] Result<CellBounds> read_site_state(const std::string& file, double voxel_size_m);
+/// Errors name the file, the field and the remedy: not a state of this version, learned with other voxels or
+/// under other ceiling LiDARs, or a value out of range. A file that does not exist is an empty state.
+[[nodiscard]] Result<CellBounds> read_site_state(const std::string& file, const Site& site,
+                                                 double voxel_size_m);
 
-/// `read_site_state`, but a server starts in any case: what cannot be read is told in the log and, where it is
-/// a file, put aside as FILE.unreadable.
-[[nodiscard]] CellBounds open_site_state(const std::string& file, double voxel_size_m);
+struct SiteState {
+  CellBounds learned;
+  std::string file;  ///< to keep it in; empty: in memory alone
+};
+/// `read_site_state`, but a server starts in any case: what cannot be used is told in the log and put aside
+/// under a free name, FILE.unreadable or FILE.unreadable-2 ...; what cannot be put aside stays as it is.
+[[nodiscard]] SiteState open_site_state(const std::string& file, const Site& site, double voxel_size_m);
 
 /// Complete or not at all.
-[[nodiscard]] Status write_site_state(const std::string& file, double voxel_size_m, const CellBounds& bounds);
+[[nodiscard]] Status write_site_state(const std::string& file, const Site& site, double voxel_size_m,
+                                      const CellBounds& bounds);
 
 }  // namespace liloc

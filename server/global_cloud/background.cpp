@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace liloc {
+namespace {
+
+bool lasted(std::uint32_t since_ms, std::uint32_t now_ms, double seconds) {
+  return static_cast<double>(now_ms - since_ms) >= 1e3 * seconds;
+}
+
+}  // namespace
 
 Background::Background(const Camera& camera, const BackgroundOptions& options)
     : options_(options),
@@ -19,10 +26,10 @@ void Background::replace(Pixel* pixel, float units) {
   ++replaced_;
 }
 
-bool Background::moving(Pixel* pixel, float units, float now_s) {
+bool Background::moving(Pixel* pixel, float units, std::uint32_t now_ms) {
   const float tolerance = static_cast<float>(options_.tolerance_m / scale_m_) + 0.01F * units;
   const float nearer = pixel->surface - units;
-  pixel->missing_since_s = -1;
+  pixel->missing = false;
   if (pixel->surface > 0 && std::abs(nearer) <= tolerance) {
     if (pixel->averaged < options_.most_averaged) ++pixel->averaged;
     pixel->surface -= nearer / static_cast<float>(pixel->averaged);
@@ -31,37 +38,37 @@ bool Background::moving(Pixel* pixel, float units, float now_s) {
   }
   if (pixel->candidates == 0 || std::abs(pixel->candidate - units) > tolerance) {
     pixel->candidate = units;
-    pixel->candidate_since_s = now_s;
+    pixel->candidate_since_ms = now_ms;
     pixel->candidates = 0;
   }
   if (pixel->candidates < 255) ++pixel->candidates;
   const bool gone = pixel->surface > 0 && nearer < 0 && pixel->candidates >= 2;
-  const bool settled = now_s - pixel->candidate_since_s >= static_cast<float>(options_.settle_seconds);
+  const bool settled = lasted(pixel->candidate_since_ms, now_ms, options_.settle_seconds);
   if (!gone && !settled) return true;
   replace(pixel, units);
   return false;
 }
 
-void Background::miss(Pixel* pixel, float now_s) {
+void Background::miss(Pixel* pixel, std::uint32_t now_ms) {
   if (pixel->surface == 0) return;
-  if (pixel->missing_since_s < 0) pixel->missing_since_s = now_s;
-  if (now_s - pixel->missing_since_s >= static_cast<float>(options_.forget_seconds)) replace(pixel, 0);
+  if (!pixel->missing) pixel->missing_since_ms = now_ms;
+  pixel->missing = true;
+  if (lasted(pixel->missing_since_ms, now_ms, options_.forget_seconds)) replace(pixel, 0);
 }
 
 DepthImage Background::learn(const DepthImage& image) {
-  const bool first = first_ns_ == 0;
-  if (first) first_ns_ = image.stamp_ns;
+  const bool first = frames_ == 0;
   last_ns_ = image.stamp_ns;
   ++frames_;
-  const auto now_s = static_cast<float>(to_seconds(image.stamp_ns - first_ns_));
+  const auto now_ms = static_cast<std::uint32_t>(image.stamp_ns / 1'000'000);
   DepthImage still = image;
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     if (image.units[i] == 0) {
-      miss(&pixels_[i], now_s);
+      miss(&pixels_[i], now_ms);
       continue;
     }
     if (first) replace(&pixels_[i], image.units[i]);
-    if (!moving(&pixels_[i], image.units[i], now_s)) continue;
+    if (!moving(&pixels_[i], image.units[i], now_ms)) continue;
     const int u = static_cast<int>(i) % width_, v = static_cast<int>(i) / width_;
     for (int y = std::max(0, v - 1); y <= std::min(height_ - 1, v + 1); ++y)
       for (int x = std::max(0, u - 1); x <= std::min(width_ - 1, u + 1); ++x)

@@ -37,18 +37,20 @@ class Background {
 
  private:
   struct Pixel {
-    float surface = 0, candidate = 0;                   ///< units; 0: not seen yet
-    float candidate_since_s = 0, missing_since_s = -1;  ///< -1: not missing
+    float surface = 0, candidate = 0;  ///< units; 0: not seen yet
+    std::uint32_t candidate_since_ms = 0, missing_since_ms = 0;
     std::uint8_t averaged = 0, candidates = 0;
+    bool missing = false;
   };
-  [[nodiscard]] bool moving(Pixel* pixel, float units, float now_s);
-  void miss(Pixel* pixel, float now_s);
+  // Times are milliseconds that wrap: only differences count, and a clock may be set forward by years.
+  [[nodiscard]] bool moving(Pixel* pixel, float units, std::uint32_t now_ms);
+  void miss(Pixel* pixel, std::uint32_t now_ms);
   void replace(Pixel* pixel, float units);
 
-  const BackgroundOptions options_;
-  const int width_, height_;
-  const double scale_m_;
-  StampNs first_ns_ = 0, last_ns_ = 0;
+  BackgroundOptions options_;
+  int width_, height_;
+  double scale_m_;
+  StampNs last_ns_ = 0;
   std::size_t replaced_ = 0;  ///< pixels, since the surfaces were last asked for
   int frames_ = 0;
   std::vector<Pixel> pixels_;

@@ -8,6 +8,7 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kSnapshotsKept = 6, kRoomsKept = 3;  // a room's indices are some 20 MB, a snapshot 1 MB
+constexpr int kLateOnes = 3;                               // in a row: it is not one bad stamp
 
 StampNs gap(StampNs a, StampNs b) {
   return a > b ? a - b : b - a;
@@ -35,7 +36,7 @@ DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_s
 GlobalCloud::GlobalCloud(Site site, GlobalCloudOptions options)
     : site_(std::move(site)), options_(options), frames_(site_.global_lidars.size()) {
   for (const GlobalLidar& lidar : site_.global_lidars)
-    watches_.push_back({Background(lidar.camera, options_.background), nullptr, 0});
+    watches_.push_back({Background(lidar.camera, options_.background), nullptr, 0, 0});
 }
 
 Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
@@ -49,7 +50,8 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
   {
     const std::scoped_lock lock(mutex_);
     auto& frames = frames_[lidar];
-    if (!frames.empty() && image.stamp_ns <= frames.back()->stamp_ns())
+    if (!frames.empty() && image.stamp_ns <= frames.back()->stamp_ns() &&
+        !clock_set_back(lidar, image.stamp_ns))
       return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns,
                   frames.back()->stamp_ns());
     frames.push_back(watched(lidar, std::move(image)));
@@ -60,9 +62,21 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
   return {};
 }
 
+bool GlobalCloud::clock_set_back(std::size_t lidar, StampNs stamp_ns) {
+  Watch& watch = watches_[lidar];
+  const bool late = stamp_ns < frames_[lidar].back()->stamp_ns() - options_.keep_ns;
+  watch.late = late ? watch.late + 1 : 0;
+  if (watch.late < kLateOnes) return false;
+  watch = {Background(site_.global_lidars[lidar].camera, options_.background), nullptr, epoch_, 0};
+  frames_[lidar].clear();
+  epoch_since_ns_ = std::min(epoch_since_ns_, stamp_ns);
+  return true;
+}
+
 GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
   const GlobalLidar& info = site_.global_lidars[lidar];
-  auto& [background, surfaces, epoch] = watches_[lidar];
+  auto& [background, surfaces, epoch, late] = watches_[lidar];
+  late = 0;
   DepthImage moving;
   if (!options_.drop_moving) {
     surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);

@@ -29,7 +29,8 @@ class GlobalCloud {
   GlobalCloud(Site site, GlobalCloudOptions options);
 
   /// Takes a depth frame of LiDAR `lidar` (index into the site). Errors: the size differs from the site's, a
-  /// stamp that is not newer than the LiDAR's last. The frame is then left out and nothing changes.
+  /// stamp that is not newer than the LiDAR's last. The frame is then left out and nothing changes; but when
+  /// several in a row are older than anything that is kept, its clock was set back, and it begins anew.
   [[nodiscard]] Status add_depth(std::size_t lidar, DepthImage image);
   /// The same for a LiDAR that streams points (sensor frame): they are rendered into its camera.
   [[nodiscard]] Status add_points(std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor);
@@ -52,7 +53,9 @@ class GlobalCloud {
     Background background;
     std::shared_ptr<const LidarSurfaces> surfaces;
     int epoch = 0;
+    int late = 0;  ///< frames in a row that are older than anything kept
   };
+  [[nodiscard]] bool clock_set_back(std::size_t lidar, StampNs stamp_ns);                       ///< mutex_ held
   [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);                             ///< mutex_ held
   [[nodiscard]] std::shared_ptr<const StitchedRoom> room_of(const std::vector<Frame>& frames);  ///< mutex_ held
   [[nodiscard]] Frame nearest_frame(std::size_t lidar, StampNs stamp_ns) const;  ///< null: none; mutex_ held

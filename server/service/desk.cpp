@@ -1,16 +1,13 @@
 #include "server/service/desk.hpp"
 
 #include <exception>
+#include <utility>
 
 #include "common/base/ids.hpp"
 #include "common/base/log.hpp"
 
 namespace liloc {
 namespace {
-
-bool same_client(const wire::Arrival& a, const wire::Arrival& b) {
-  return a.from.client_id == b.from.client_id;
-}
 
 /// Of two requests of one client: a later run of the client is newer, and within a run the higher seq.
 bool is_newer(const wire::Arrival& a, const wire::Arrival& b) {
@@ -35,7 +32,7 @@ Desk::Desk(ServiceOptions options, ServiceBackend backend, Answer answer)
       backend_(std::move(backend)),
       answer_(std::move(answer)),
       sessions_(options_.max_rate_hz),
-      queue_(options_.queue) {
+      line_(options_.queue) {
   for (int i = 0; i < options_.workers; ++i) workers_.emplace_back([this] { work(); });
 }
 
@@ -44,16 +41,17 @@ Desk::~Desk() {
 }
 
 void Desk::submit(wire::Arrival arrival) {
-  if (stopping_) return refuse(arrival, Reason::shutting_down, "the server stops");
-  bool begins = false, late = false;
+  bool stopping = false, begins = false, late = false;
   {
     const std::scoped_lock lock(mutex_);
-    if (!sessions_.admit(arrival)) arrival.problem = Reason::rate_limit;
-    if (arrival.problem == Reason::none) {
+    stopping = stopping_;
+    if (!stopping && !sessions_.admit(arrival)) arrival.problem = Reason::rate_limit;
+    if (!stopping && arrival.problem == Reason::none) {
       begins = sessions_.begins(arrival.from);
       late = sessions_.is_late(arrival.from, arrival.request.seq);
     }
   }
+  if (stopping) return refuse(arrival, Reason::shutting_down, "the server stops");
   if (arrival.problem == Reason::rate_limit)
     return refuse(arrival, Reason::rate_limit,
                   fmt::format("more than {} requests a second", options_.max_rate_hz));
@@ -61,13 +59,9 @@ void Desk::submit(wire::Arrival arrival) {
   if (late) return refuse(arrival, Reason::late, "a request as new as this was answered already");
   if (begins && backend_.forget) backend_.forget(arrival.from.client_id);
 
-  if (const auto older = take_older(arrival)) {
-    if (is_newer(*older, arrival)) {  // they came in the wrong order
-      refuse(arrival, Reason::superseded, "a newer request took its place");
-      arrival = *older;
-    } else {
-      refuse(*older, Reason::superseded, "a newer request took its place");
-    }
+  if (auto older = take_waiting(arrival.from.client_id)) {
+    if (is_newer(*older, arrival)) std::swap(*older, arrival);  // they came in the wrong order
+    refuse(*older, Reason::superseded, "a newer request took its place");
   }
   if (options_.hold.count() > 0 && backend_.ready && !backend_.ready(arrival.request.match_stamp_ns())) {
     const std::scoped_lock lock(mutex_);
@@ -79,24 +73,26 @@ void Desk::submit(wire::Arrival arrival) {
   enqueue(std::move(arrival));
 }
 
-std::optional<wire::Arrival> Desk::take_older(const wire::Arrival& than) {
-  {
-    const std::scoped_lock lock(mutex_);
-    const auto held =
-        std::find_if(held_.begin(), held_.end(), [&](const auto& h) { return same_client(h, than); });
-    if (held != held_.end()) {
-      std::optional<wire::Arrival> taken(std::move(*held));
-      held_.erase(held);
-      return taken;
-    }
-  }
-  return queue_.take_if([&](const wire::Arrival& queued) { return same_client(queued, than); });
+std::optional<wire::Arrival> Desk::take_waiting(const std::string& client_id) {
+  const std::scoped_lock lock(mutex_);
+  const auto held = std::ranges::find_if(held_, [&](const auto& h) { return h.from.client_id == client_id; });
+  if (held == held_.end()) return line_.take(client_id);
+  std::optional<wire::Arrival> taken(std::move(*held));
+  held_.erase(held);
+  return taken;
 }
 
 void Desk::enqueue(wire::Arrival arrival) {
-  const auto displaced = queue_.push(std::move(arrival));
+  std::optional<wire::Arrival> displaced;
+  bool stopping = false;
+  {
+    const std::scoped_lock lock(mutex_);
+    stopping = stopping_;
+    displaced = stopping ? std::move(arrival) : line_.push(std::move(arrival));
+  }
+  may_begin_.notify_one();
   if (!displaced) return;
-  if (stopping_)
+  if (stopping)
     refuse(*displaced, Reason::shutting_down, "the server stops");
   else
     refuse(*displaced, Reason::overloaded, fmt::format("{} requests are waiting", options_.queue));
@@ -108,8 +104,7 @@ void Desk::release() {
   {
     const std::scoped_lock lock(mutex_);
     std::erase_if(held_, [&](wire::Arrival& held) {
-      if (!stopping_ && now - held.at < options_.hold && !backend_.ready(held.request.match_stamp_ns()))
-        return false;
+      if (now - held.at < options_.hold && !backend_.ready(held.request.match_stamp_ns())) return false;
       due.push_back(std::move(held));
       return true;
     });
@@ -118,20 +113,39 @@ void Desk::release() {
 }
 
 void Desk::work() {
-  while (const auto arrival = queue_.pop({})) {
-    SpotReply reply;
-    try {
-      reply = backend_.locate(arrival->request);
-    } catch (const std::exception& error) {  // a worker must not take the server with it
-      log::error("request {} of {}: {}", arrival->request.seq, arrival->from.client_id, error.what());
-      reply = refusal(arrival->request, Reason::not_found, fmt::format("internal error: {}", error.what()));
-    }
-    {
-      const std::scoped_lock lock(mutex_);
-      sessions_.answered(arrival->from, arrival->request.seq);
-    }
-    finish(*arrival, std::move(reply));
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    std::optional<wire::Arrival> arrival;
+    may_begin_.wait(lock, [&] {
+      arrival = line_.begin();
+      return arrival || (stopping_ && line_.empty());
+    });
+    if (!arrival) return;
+    lock.unlock();
+    work_on(*arrival);
+    lock.lock();
+    line_.end(arrival->from.client_id);
+    may_begin_.notify_all();
   }
+}
+
+void Desk::work_on(const wire::Arrival& arrival) {
+  SpotReply reply;
+  try {
+    reply = backend_.locate(arrival.request);
+  } catch (const std::exception& error) {  // a worker must not take the server with it
+    log::error("request {} of {}: {}", arrival.request.seq, arrival.from.client_id, error.what());
+    reply = refusal(arrival.request, Reason::not_found, fmt::format("internal error: {}", error.what()));
+  }
+  bool is_current = false;
+  {
+    const std::scoped_lock lock(mutex_);
+    sessions_.answered(arrival.from, arrival.request.seq);
+    is_current = sessions_.is_current(arrival.from);
+  }
+  // The client left or began anew meanwhile: what this request has left behind is nobody's.
+  if (!is_current && backend_.forget) backend_.forget(arrival.from.client_id);
+  finish(arrival, std::move(reply));
 }
 
 void Desk::refuse(const wire::Arrival& arrival, Reason reason, std::string text) {
@@ -159,6 +173,7 @@ void Desk::client_left(const std::string& client_id) {
     const std::scoped_lock lock(mutex_);
     sessions_.forget_client(client_id);
   }
+  if (const auto waiting = take_waiting(client_id)) refuse(*waiting, Reason::superseded, "the client has left");
   if (backend_.forget) backend_.forget(client_id);
 }
 
@@ -168,16 +183,22 @@ void Desk::publication_gone(std::uint64_t publication) {
 }
 
 void Desk::stop() {
-  stopping_ = true;
-  release();
-  queue_.close();
+  std::vector<wire::Arrival> displaced;
+  {
+    const std::scoped_lock lock(mutex_);
+    stopping_ = true;
+    for (wire::Arrival& held : std::exchange(held_, {}))
+      if (auto oldest = line_.push(std::move(held))) displaced.push_back(std::move(*oldest));
+  }
+  may_begin_.notify_all();
+  for (const auto& arrival : displaced) refuse(arrival, Reason::shutting_down, "the server stops");
   for (auto& worker : workers_)
     if (worker.joinable()) worker.join();
 }
 
 ServiceCounters Desk::counters() const {
   const std::scoped_lock lock(mutex_);
-  return {answered_, verified_, refused_, static_cast<std::uint32_t>(held_.size() + queue_.size())};
+  return {answered_, verified_, refused_, static_cast<std::uint32_t>(held_.size() + line_.size())};
 }
 
 }  // namespace liloc

@@ -2,6 +2,7 @@
 // Between the network and the localizer: admits requests, keeps them in a bounded queue, has workers answer
 // them. Whatever happens to a request, it is answered exactly once.
 #include <atomic>
+#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -9,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "common/base/bounded_queue.hpp"
 #include "server/service/service_options.hpp"
 #include "server/service/sessions.hpp"
+#include "server/service/waiting_line.hpp"
 
 namespace liloc {
 
@@ -44,18 +45,20 @@ class Desk {
  private:
   void work();
   void enqueue(wire::Arrival arrival);
-  [[nodiscard]] std::optional<wire::Arrival> take_older(const wire::Arrival& than);
+  [[nodiscard]] std::optional<wire::Arrival> take_waiting(const std::string& client_id);
+  void work_on(const wire::Arrival& arrival);
   void refuse(const wire::Arrival& arrival, Reason reason, std::string text);
   void finish(const wire::Arrival& arrival, SpotReply reply);
 
   const ServiceOptions options_;
   const ServiceBackend backend_;
   const Answer answer_;
-  mutable std::mutex mutex_;  // guards sessions_ and held_
+  mutable std::mutex mutex_;           // guards what follows, down to stopping_
+  std::condition_variable may_begin_;  // a request is new, a client's last one was answered, or the desk stops
   Sessions sessions_;
   std::deque<wire::Arrival> held_;
-  BoundedQueue<wire::Arrival> queue_;
-  std::atomic<bool> stopping_ = false;
+  WaitingLine line_;
+  bool stopping_ = false;
   std::atomic<std::uint64_t> answered_ = 0, verified_ = 0, refused_ = 0;
   std::vector<std::thread> workers_;
 };

@@ -43,16 +43,20 @@ class Sessions {
     client->second = {from.session, false, 0};
     return true;
   }
-  [[nodiscard]] bool is_late(const wire::Sender& from, std::uint64_t seq) const {
+  /// False once the client has left, or begun anew.
+  [[nodiscard]] bool is_current(const wire::Sender& from) const {
     const auto client = clients_.find(from.client_id);
-    return client != clients_.end() && client->second.session == from.session && client->second.answered &&
-           seq <= client->second.last_answered;
+    return client != clients_.end() && client->second.session == from.session;
+  }
+  [[nodiscard]] bool is_late(const wire::Sender& from, std::uint64_t seq) const {
+    return is_current(from) && clients_.at(from.client_id).answered &&
+           seq <= clients_.at(from.client_id).last_answered;
   }
   void answered(const wire::Sender& from, std::uint64_t seq) {
-    const auto client = clients_.find(from.client_id);
-    if (client == clients_.end() || client->second.session != from.session) return;
-    client->second.last_answered = client->second.answered ? std::max(client->second.last_answered, seq) : seq;
-    client->second.answered = true;
+    if (!is_current(from)) return;
+    Client& client = clients_.at(from.client_id);
+    client.last_answered = client.answered ? std::max(client.last_answered, seq) : seq;
+    client.answered = true;
   }
   void forget_publication(std::uint64_t publication) { rates_.erase(publication); }
   void forget_client(const std::string& client_id) { clients_.erase(client_id); }

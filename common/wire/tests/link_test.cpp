@@ -110,6 +110,30 @@ struct Forger {
   Entity publisher, writer;
 };
 
+TEST(Link, ACallbackThatThrowsTakesNothingWithIt) {
+  constexpr int kDomain = 100;
+  const Participant seat = Participant::create({.domain = kDomain, .role = Role::server}).value();
+  const auto dispatcher = Dispatcher::create(seat).value();
+  std::atomic<int> ticks = 0;
+  Inbox<std::uint64_t> asked;
+  const auto link = ServerLink::create(*dispatcher, {}, {.on_request = [&](const Arrival& a) {
+                      asked.put(a.request.seq);
+                      throw std::runtime_error("out of something");
+                    }}).value();
+  dispatcher->every(10ms, [&] {
+    ++ticks;
+    throw std::runtime_error("out of something else");
+  });
+  dispatcher->start();
+  const Forger forger(kDomain, "robots/robot1");
+  for (int i = 0; i < 3; ++i) {
+    forger.send(sample_request("robot1"));
+    EXPECT_TRUE(asked.take()) << "request " << i;
+  }
+  EXPECT_TRUE(eventually([&] { return ticks > 3; }));
+  dispatcher->stop();
+}
+
 TEST(Link, ARequestIsAnsweredWithAllItsFields) {
   Server server(101);
   Client client(101, "robot1");

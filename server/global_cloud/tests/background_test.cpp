@@ -42,6 +42,15 @@ TEST(Background, WhatStaysBecomesMapWithinSeconds) {
   }
 }
 
+TEST(Background, AClockThatWasSetForwardByYearsChangesNothing) {
+  Background background(kCamera, {});
+  (void)background.learn(with_visitor(-3e8, 0, 0));
+  for (int i = 1; i <= 18; ++i) {
+    const DepthImage still = background.learn(with_visitor(0.15 * i, 10, 16));
+    EXPECT_EQ(count(still, 2500), 0.15 * i < 2.2 ? 0 : 6 * 30) << "at " << 0.15 * i << " s";
+  }
+}
+
 TEST(Background, WhatLeavesUncoversMapAtOnce) {
   Background background(kCamera, {});
   for (int i = 0; i < 5; ++i) EXPECT_EQ(count(background.learn(with_visitor(0.15 * i, 10, 16)), 0), 0);

@@ -58,6 +58,24 @@ TEST(GlobalCloud, BadFramesChangeNothing) {
   EXPECT_TRUE(cloud.nearest(kT0));
 }
 
+TEST(GlobalCloud, ALidarWhoseClockWasSetBackIsHeardAgain) {
+  GlobalCloud cloud(two_lidars(), {});
+  ASSERT_TRUE(cloud.add_depth(0, wall(kT0 + from_seconds(3600))));
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(cloud.add_depth(0, wall(kT0 + from_ms(100 * i))));
+  for (int i = 2; i < 5; ++i) EXPECT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(100 * i))));
+  ASSERT_TRUE(cloud.nearest(kT0 + from_ms(400)));
+  EXPECT_FALSE(cloud.nearest(kT0 + from_seconds(3600))) << "what it showed by the old clock is gone";
+}
+
+TEST(GlobalCloud, OneBadStampChangesNothing) {
+  GlobalCloud cloud(two_lidars(), {});
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(100 * i))));
+    EXPECT_FALSE(cloud.add_depth(0, wall(from_ms(100 * i)))) << "a driver that now and then forgets the time";
+    EXPECT_TRUE(cloud.nearest(kT0 + from_ms(100 * i)));
+  }
+}
+
 TEST(GlobalCloud, KeepsThreeSeconds) {
   GlobalCloud cloud(two_lidars(), {});
   for (int i = 0; i <= 50; ++i) ASSERT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(100 * i))));

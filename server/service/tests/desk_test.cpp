@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <map>
+#include <set>
 
 namespace liloc {
 namespace {
@@ -222,6 +223,97 @@ TEST(Desk, StoppingFinishesWhatWaitsAndRefusesTheRest) {
   EXPECT_EQ(answers.reason("held", 9), Reason::confirmed);
   EXPECT_EQ(answers.reason("c", 1), Reason::shutting_down);
   answers.expect_each_once(4);
+}
+
+TEST(Desk, OneClientKeepsOneWorkerAtMost) {
+  Gate gate;
+  Answers answers;
+  Desk desk(
+      {.workers = 2},
+      {.locate = [&](const SpotRequest& r) { return r.client_id == "slow" ? gate.pass(r) : verified(r); }},
+      answers.sink());
+  desk.submit(arrival("slow", 1));
+  gate.wait_inside();
+  desk.submit(arrival("slow", 2));
+  desk.submit(arrival("b", 1));
+  EXPECT_TRUE(answers.wait_for(1)) << "the second request of the slow client has taken the other worker";
+  EXPECT_EQ(answers.reason("b", 1), Reason::confirmed);
+  EXPECT_EQ(desk.counters().queued, 1U) << "it may still be superseded";
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(3));
+  EXPECT_EQ(answers.reason("slow", 2), Reason::confirmed);
+  answers.expect_each_once(3);
+}
+
+// A localizer that knows clients by their requests, as the real one does.
+class Known {
+ public:
+  void add(const std::string& client_id) {
+    const std::scoped_lock lock(mutex_);
+    known_.insert(client_id);
+  }
+  void erase(const std::string& client_id) {
+    const std::scoped_lock lock(mutex_);
+    known_.erase(client_id);
+  }
+  bool empty() {
+    const std::scoped_lock lock(mutex_);
+    return known_.empty();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::string> known_;
+};
+
+TEST(Desk, NothingIsKeptOfAClientThatLeftWhileItsRequestsWereInHand) {
+  Gate gate;
+  Answers answers;
+  Known known;
+  const auto locate = [&](const SpotRequest& r) {
+    const SpotReply reply = gate.pass(r);
+    known.add(r.client_id);
+    return reply;
+  };
+  Desk desk({.workers = 1}, {.locate = locate, .forget = [&](const std::string& id) { known.erase(id); }},
+            answers.sink());
+  desk.submit(arrival("in work", 1));
+  gate.wait_inside();
+  desk.submit(arrival("waiting", 1));
+  desk.client_left("in work");
+  desk.client_left("waiting");
+  EXPECT_EQ(desk.counters().queued, 0U);
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(2));
+  desk.stop();
+  EXPECT_TRUE(known.empty());
+  answers.expect_each_once(2);
+}
+
+TEST(Desk, WhatAnEndedRunLeftBehindIsForgottenBeforeTheNextIsAnswered) {
+  Gate gate;
+  Answers answers;
+  std::mutex mutex;
+  std::vector<std::string> events;
+  const auto note = [&](std::string event) {
+    const std::scoped_lock lock(mutex);
+    events.push_back(std::move(event));
+  };
+  const auto locate = [&](const SpotRequest& r) {
+    const SpotReply reply = gate.pass(r);
+    note("answered " + std::to_string(r.seq));
+    return reply;
+  };
+  Desk desk({.workers = 2}, {.locate = locate, .forget = [&](const std::string&) { note("forgotten"); }},
+            answers.sink());
+  desk.submit(arrival("a", 7, 1));
+  gate.wait_inside();
+  desk.submit(arrival("a", 1, 2));
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(2));
+  desk.stop();
+  EXPECT_EQ(events, (std::vector<std::string>{"forgotten", "answered 7", "forgotten", "answered 1"}));
+  answers.expect_each_once(2);
 }
 
 // Eight threads, four workers, a queue of eight, a stop in the midst: each request is answered exactly once.

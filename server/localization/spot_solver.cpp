@@ -113,8 +113,10 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
     if (up.borne_out && (convincing(found) || plausible(found))) return found;
   }
   if (convincing(found)) return found;
-  return merged(std::move(found),
-                judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem)));
+  std::vector<Hypothesis> by_features =
+      judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem));
+  std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
+  return merged(std::move(found), by_features);
 }
 
 }  // namespace liloc

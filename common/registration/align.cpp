@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
 
 #include "common/geometry/voxel.hpp"
 #include "common/registration/normals.hpp"
@@ -10,13 +13,28 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kFewestPoints = 50;
+constexpr std::size_t kFewestPoints = 50, kMostDescribed = 12'000;
 
 Status check(const AlignOptions& options) {
   if (!(options.voxel_size_m >= 0.005 && options.voxel_size_m <= 1.0))
     return fail("voxel is {} m; give 0.005 to 1", options.voxel_size_m);
   if (options.threads < 1) return fail("threads is {}; give at least 1", options.threads);
   return {};
+}
+
+/// Half of the points must lie where floats tell a tenth of a voxel apart.
+Status near_origin(std::string_view name, const Cloud& cloud, double voxel_size_m) {
+  std::vector<float> distances_m;
+  for (const Eigen::Vector3f& p : cloud.points)
+    if (p.allFinite()) distances_m.push_back(p.cwiseAbs().maxCoeff());
+  if (distances_m.empty()) return {};
+  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+  std::nth_element(distances_m.begin(), middle, distances_m.end());
+  const double farthest_m = 0.1 * voxel_size_m / std::numeric_limits<float>::epsilon();
+  if (*middle < farthest_m) return {};
+  return fail(
+      "{} lies {:.3g} m from its origin, where floats are too coarse for a voxel of {} m; move it there", name,
+      *middle, voxel_size_m);
 }
 
 struct Ranked {
@@ -41,6 +59,8 @@ std::vector<Ranked> rank(const SpotProblem& problem, const std::vector<Candidate
 Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const AlignOptions& options) {
   if (const Status status = check(options); !status) return tl::unexpected(status.error());
   const double voxel = options.voxel_size_m;
+  for (const auto& [name, cloud] : {std::pair{"source", &source}, {"target", &target}})
+    if (const Status near = near_origin(name, *cloud, voxel); !near) return tl::unexpected(near.error());
   const Query query = make_query(source, nullptr, {voxel, 400, options.seed});
   if (query.cloud.size() < kFewestPoints)
     return fail("source has {} usable points at a voxel of {} m; at least {} are needed", query.cloud.size(),
@@ -50,8 +70,8 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
     return fail("target has {} usable points at a voxel of {} m; at least {} are needed", thin.size(), voxel,
                 kFewestPoints);
   const Target room = make_target(std::move(thin), {}, voxel);
-  const Described room_described = describe(room->coarse, {10 * voxel, 1.0, options.seed});
-  const Described query_described = describe(query.medium, {10 * voxel, 1.0, options.seed});
+  const Described room_described = describe(room->coarse, {10 * voxel, 1.0, options.seed, kMostDescribed});
+  const Described query_described = describe(query.medium, {10 * voxel, 1.0, options.seed, kMostDescribed});
   SpotProblem problem{room, query};
   problem.target_described = [&]() -> const Described& { return room_described; };
   problem.query_described = [&]() -> const Described& { return query_described; };

@@ -21,7 +21,8 @@ struct AlignResult {
 };
 
 /// Aligns two bare clouds, each seen from about the origin of its own frame (normals are turned there). Errors:
-/// an option out of range, or a cloud with fewer than 50 points after thinning. A poor fit is a result.
+/// an option out of range, a cloud with fewer than 50 points after thinning, or one far from its origin. A poor
+/// fit is a result.
 [[nodiscard]] Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target,
                                                const AlignOptions& options);
 

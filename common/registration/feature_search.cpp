@@ -115,8 +115,11 @@ std::vector<Candidate> ransac(const ScoreField& field, const std::vector<Eigen::
 
 Described describe(const Cloud& thinned, const DescribeOptions& options) {
   Described result{thinned, {}};
+  const double most =
+      static_cast<double>(options.most) / static_cast<double>(std::max<std::size_t>(1, thinned.size()));
+  const double share = std::min(options.sampling, most);
   result.features =
-      fpfh(thinned, sample_indices(thinned.size(), options.sampling, options.seed), options.feature_radius_m);
+      fpfh(thinned, sample_indices(thinned.size(), share, options.seed), options.feature_radius_m);
   return result;
 }
 

@@ -17,6 +17,7 @@ struct DescribeOptions {
   double feature_radius_m = 0.5;  ///< five times the spacing of the thinned cloud
   double sampling = 0.5;          ///< share of the points that are described
   std::uint64_t seed = 1;
+  std::size_t most = 100'000;  ///< about so many are described at most: matching costs their product
 };
 [[nodiscard]] Described describe(const Cloud& thinned, const DescribeOptions& options);
 

@@ -8,32 +8,39 @@
 #include <cctype>
 #include <exception>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "common/geometry/pcl.hpp"
+#include "proto-tests/toolbox/pcd_header.hpp"
 
 namespace liloc::toolbox {
 namespace {
 
 using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
 
-/// PCL makes room for as many points as a header claims before it looks for them.
-Status check_claim(const std::filesystem::path& file) {
+/// PCL makes room for as many points as a header claims before it looks for them, and takes an axis that is not
+/// there for zero.
+Status check_ply_header(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const auto size = std::filesystem::file_size(file);
-  std::string line;
+  std::string line, element;
+  std::set<std::string> of_vertex;
   for (int i = 0; i < 200 && std::getline(in, line); ++i) {
     std::istringstream words(line);
-    std::string first, second;
+    std::string keyword, name;
     double count = 0;
-    words >> first;
-    if (first == "element") words >> second;
-    if (first == "element" || first == "POINTS" || first == "WIDTH" || first == "HEIGHT")
-      if (words >> count; count < 0 || count > 50e6 || count > static_cast<double>(size))
-        return fail("{}: claims {} {} in {} bytes; write it anew", file.string(), count,
-                    second.empty() ? first : second, size);
-    if (first == "end_header" || first == "DATA") break;
+    words >> keyword;
+    if (keyword == "end_header") break;
+    if (keyword == "property" && element == "vertex")
+      while (words >> name) of_vertex.insert(name);
+    if (keyword != "element" || !(words >> element >> count)) continue;
+    if (count < 0 || count > 50e6 || count > static_cast<double>(size))
+      return fail("{}: claims {} {} in {} bytes; write it anew", file.string(), count, element, size);
   }
+  for (const char* axis : {"x", "y", "z"})
+    if (!of_vertex.contains(axis))
+      return fail("{}: its vertices have no {}; write it anew", file.string(), axis);
   return {};
 }
 
@@ -53,7 +60,8 @@ Result<Cloud> read_cloud_file(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     return fail("{}: is no readable file; check the path", name);
-  if (auto status = check_claim(file); !status) return tl::unexpected(status.error());
+  if (auto status = kind == ".ply" ? check_ply_header(file) : check_pcd_header(file); !status)
+    return tl::unexpected(status.error());
 
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // our own line says it
   PclCloud points;

@@ -124,5 +124,24 @@ TEST(Align, HostileCloudsAreErrorsOrUntrusted) {
   EXPECT_FALSE(align_clouds(good, good, options));
 }
 
+TEST(Align, CloudsFarFromTheirOriginAreErrorsAndASinglePointThereIsNot) {
+  const Cloud good = two_walls_and_a_box(1);
+  Cloud far = good, one_far = good;
+  for (Eigen::Vector3f& p : far.points) p.x() += 1e6F;
+  one_far.points.emplace_back(1e7F, 1e7F, 1e7F);
+  const auto result = align_clouds(far, good, {});
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().message.find("source"), std::string::npos) << result.error().message;
+  EXPECT_TRUE(align_clouds(one_far, good, {}));
+}
+
+TEST(Describe, ACloudOfAnySizeGivesABoundedNumberOfDescriptors) {
+  const Cloud cloud = with_normals(voxel_downsample(two_walls_and_a_box(1), 0.05), Eigen::Vector3f::Zero());
+  const auto described = [&](std::size_t most) { return describe(cloud, {0.5, 1.0, 1, most}).features.size(); };
+  ASSERT_GT(cloud.size(), 2000U);
+  EXPECT_EQ(described(1'000'000), described(cloud.size()));
+  EXPECT_NEAR(static_cast<double>(described(500)), 500, 100);
+}
+
 }  // namespace
 }  // namespace liloc

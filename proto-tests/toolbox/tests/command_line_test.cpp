@@ -100,8 +100,36 @@ TEST_F(CommandLine, CloudsThatCannotBeReadAreRefused) {
   expect_complaint(liloc("align " + path("huge.ply") + " " + path("huge.ply")), 2, "huge.ply");
   ASSERT_TRUE(write_file(folder_.path() / "short.ply", head + "50" + tail + "abc"));
   expect_complaint(liloc("align " + path("short.ply") + " " + path("short.ply")), 2, "short.ply");
+  ASSERT_TRUE(write_file(folder_.path() / "flat.ply",
+                         "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+                         "property float y\nend_header\n1 2\n3 4\n"));
+  expect_complaint(liloc("align " + path("flat.ply") + " " + path("flat.ply")), 2, "no z");
   ASSERT_TRUE(write_file(folder_.path() / "garbage.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nDATA ascii\n1 2\n"));
   expect_complaint(liloc("align " + path("garbage.pcd") + " " + path("garbage.pcd")), 2, "garbage.pcd");
+}
+
+TEST_F(CommandLine, PcdFilesThatLieAreRefusedBeforeRoomIsMadeForThem) {
+  const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n", one = "WIDTH 1\nHEIGHT 1\nPOINTS 1\n";
+  const std::uint32_t lengths[2] = {4, 2'000'000'000};
+  const std::string unpacked(reinterpret_cast<const char*>(lengths), sizeof(lengths));
+  for (const auto& [text, says] : std::initializer_list<std::pair<std::string, const char*>>{
+           {"", "no PCD header"},
+           {std::string(5000, '\x9c'), "no PCD header"},
+           {"FIELDS x y z\nSIZE 4 4 4\nBAD\nDATA ascii\n", "no PCD header"},
+           {fields + "DATA ascii\n", "WIDTH"},
+           {"FIELDS x y q\nSIZE 4 4 4\nTYPE F F F\n" + one + "DATA ascii\n0 0 0\n", "no z"},
+           {"FIELDS x y z\nSIZE 4 4\nTYPE F F F\n" + one + "DATA ascii\n0 0 0\n", "SIZEs"},
+           {fields + "COUNT 1 1 100000000\n" + one + "DATA ascii\n0 0 0\n", "COUNT"},
+           {fields + "WIDTH -5\nHEIGHT 1\nPOINTS -5\nDATA ascii\n0 0 0\n", "POINTS"},
+           {fields + "WIDTH 1\nHEIGHT 1\nPOINTS 7\nDATA ascii\n0 0 0\n", "POINTS"},
+           {fields + "WIDTH 1000\nHEIGHT 1000\nPOINTS 1000000\nDATA binary\n0 0 0\n", "claims"},
+           {fields + "WIDTH 1000\nHEIGHT 1000\nDATA ascii\n0 0 0\n", "claims"},
+           {fields + one + "DATA binary_compressed\n" + unpacked + "0000", "claims"}}) {
+    ASSERT_TRUE(write_file(folder_.path() / "lie.pcd", text));
+    const Outcome outcome = liloc("align " + path("lie.pcd") + " " + path("lie.pcd"));
+    expect_complaint(outcome, 2, "lie.pcd");
+    EXPECT_THAT(outcome.out, HasSubstr(says));
+  }
 }
 
 TEST_F(CommandLine, AlignsAPublishedPair) {

@@ -40,6 +40,10 @@ OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
   return options;
 }
 
+RequestScheduleOptions schedule_options(const EngineOptions& o) {
+  return {o.interval_ns, o.cold ? o.interval_ns : o.searching_interval_ns, o.reply_timeout_ns};
+}
+
 /// Where a frame was taken, and whether it can be sent.
 struct Placed {
   OdometryStep step;
@@ -61,7 +65,7 @@ struct Engine::Impl {
       : options(std::move(o)),
         thinning(thinning_for(options.camera)),
         odometry(odometry_options(options, thinning)),
-        schedule(options.interval_ns, options.reply_timeout_ns),
+        schedule(schedule_options(options)),
         link(kSilentIntervals * options.interval_ns) {
     if (options.T_imu_sensor) imu.emplace(ImuTrackOptions{.still_seconds = options.still_seconds});
     if (options.local == LocalMethod::external)
@@ -121,6 +125,7 @@ void Engine::Impl::note_motion(const OdometryStep& step) {
     local_poses.clear();
     path_m = turned_rad = 0;
     segment = step.segment;
+    schedule.search_begins();
   } else if (started) {
     path_m += distance_m(step.T_odom_sensor, T_odom_last);
     turned_rad += angle_between_rad(step.T_odom_sensor, T_odom_last);
@@ -274,8 +279,9 @@ std::vector<std::uint64_t> Engine::take_unanswered() {
 }
 
 void Engine::add_reply(const SpotReply& reply) {
-  impl_->schedule.answered(reply.seq);
+  impl_->schedule.answered(reply, impl_->last_ns);
   impl_->link.add(reply, impl_->segment);
+  if (impl_->link.located(impl_->segment)) impl_->schedule.search_ended();
 }
 
 std::string Engine::problem() const {

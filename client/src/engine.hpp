@@ -30,6 +30,8 @@ struct EngineOptions {
   std::uint64_t seed = 1;
   bool submap = true;                     ///< send what stands around as well, unless `cold`
   Pose T_base_sensor = Pose::Identity();  ///< with external odometry: the sensor on what the odometry moves
+  /// Lower bound between registrations while nothing is verified; 0: a quarter of the interval. Cold: none.
+  StampNs searching_interval_ns = 0;
 };
 
 /// A pose by the odometry of somebody else, in a frame of its own that never jumps.

@@ -18,7 +18,7 @@ bool MapLink::add(const SpotReply& reply, std::uint32_t segment) {
 Tracking MapLink::tracking(StampNs now_ns, std::uint32_t segment) const {
   if (!T_map_odom_) return Tracking::searching;
   const bool silent = now_ns - answered_ns_ > silent_after_ns_;
-  return silent || segment != verified_segment_ ? Tracking::coasting : Tracking::tracking;
+  return silent || !located(segment) ? Tracking::coasting : Tracking::tracking;
 }
 
 }  // namespace liloc

@@ -14,6 +14,10 @@ class MapLink {
   bool add(const SpotReply& reply, std::uint32_t segment);
   /// The newest verified link. After a break of the odometry the old one stays in use, bridged by the guess.
   [[nodiscard]] const std::optional<Pose>& T_map_odom() const { return T_map_odom_; }
+  /// Whether an answer of this segment was verified.
+  [[nodiscard]] bool located(std::uint32_t segment) const {
+    return T_map_odom_ && segment == verified_segment_;
+  }
   [[nodiscard]] Tracking tracking(StampNs now_ns, std::uint32_t segment) const;
 
  private:

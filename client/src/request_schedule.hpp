@@ -7,29 +7,49 @@
 
 namespace liloc {
 
+struct RequestScheduleOptions {
+  StampNs interval_ns = from_ms(800);  ///< upper bound between requests
+  /// Lower bound while nothing is verified; 0: a quarter of `interval_ns`. Not under `interval_ns`: no haste.
+  StampNs searching_interval_ns = 0;
+  StampNs reply_timeout_ns = from_ms(4000);
+};
+
 /// When the next global registration is due, by the stamps of the frames alone (paper, section 5.3): at the
 /// first usable frame, then every interval, and at once after a stretch of non-informative frames.
+///
+/// While nothing is verified, an answer brings the next request forward, so that several spots are there soon:
+/// one interval long in quick succession, then at gaps that double up to the interval. At least as much time
+/// passes between an answer and the next request as the answer took, and a server that is silent or refuses
+/// for want of time is asked every interval and no more.
 class RequestSchedule {
  public:
-  RequestSchedule(StampNs interval_ns, StampNs reply_timeout_ns)
-      : interval_ns_(interval_ns), reply_timeout_ns_(reply_timeout_ns) {}
+  explicit RequestSchedule(RequestScheduleOptions options);
 
   /// To be called once per frame; true when this frame is to be sent.
   [[nodiscard]] bool due(StampNs stamp_ns, bool informative);
-  /// A request left / was answered.
-  void sent(std::uint64_t seq, StampNs stamp_ns) { pending_.push_back({seq, stamp_ns}); }
-  void answered(std::uint64_t seq);
+  /// A request left / was answered, as of the newest frame's stamp.
+  void sent(std::uint64_t seq, StampNs stamp_ns);
+  void answered(const SpotReply& reply, StampNs now_ns);
+  /// An answer was verified: there is no haste any more.
+  void search_ended() { located_ = true; }
+  /// The odometry broke: what was verified holds no longer.
+  void search_begins();
   /// The requests that have waited too long at `stamp_ns`; each is named once.
   [[nodiscard]] std::vector<std::uint64_t> take_unanswered(StampNs stamp_ns);
 
  private:
+  [[nodiscard]] StampNs searching_gap_ns() const;
+
   struct Pending {
     std::uint64_t seq;
     StampNs stamp_ns;
   };
-  StampNs interval_ns_, reply_timeout_ns_;
+  RequestScheduleOptions options_;
   std::optional<StampNs> last_ns_;
-  bool after_gap_ = false;
+  std::optional<StampNs> hurried_ns_;          ///< from here on a request is due before the interval is over
+  std::optional<StampNs> searching_since_ns_;  ///< stamp of the first request of this search
+  StampNs gap_ns_ = 0;                         ///< between the last two requests
+  bool after_gap_ = false, located_ = false;
   std::vector<Pending> pending_;
 };
 

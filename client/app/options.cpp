@@ -102,6 +102,13 @@ void declare(CLI::App& app, DaemonOptions& options, Raw& raw) {
   method->add_option("--interval-ms", c.interval_ms, "Upper bound between global registrations")
       ->check(CLI::Range(50, 60'000))
       ->capture_default_str();
+  method
+      ->add_option(
+          "--searching-interval-ms", c.searching_interval_ms,
+          "Lower bound while nothing is verified: an answer brings the next request forward; 0: a quarter "
+          "of --interval-ms")
+      ->check(CLI::Range(0, 60'000))
+      ->capture_default_str();
   method->add_option("--reply-timeout-ms", c.reply_timeout_ms, "A request older than so counts as unanswered")
       ->check(CLI::Range(100, 600'000))
       ->capture_default_str();
@@ -115,6 +122,11 @@ void declare(CLI::App& app, DaemonOptions& options, Raw& raw) {
       ->check(CLI::Range(0.02, 1.0))
       ->capture_default_str();
   method->add_flag("!--no-submap", c.submap, "Send the frame alone, without what stands around");
+  method
+      ->add_option("--request-bytes", c.request_bytes,
+                   "Most, of a request's clouds: the surroundings give way first, then the frame is thinned")
+      ->check(CLI::Range(2000, 60'000))
+      ->capture_default_str();
   method->add_flag("--cold", c.cold, "Each request is answered on its own");
   method->add_option("--seed", c.seed, "Of all randomness")->capture_default_str();
 

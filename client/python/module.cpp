@@ -78,6 +78,8 @@ void declare_answers(py::module_& module) {
       .def_readonly("converged", &PoseUpdate::converged)
       .def_readonly("state", &PoseUpdate::state)
       .def_readonly("server_connected", &PoseUpdate::server_connected)
+      .def_property_readonly("observed",
+                             [](const PoseUpdate& u) { return py::array_t<double>(6, u.observed.data()); })
       .def("__repr__", &text_of);
   py::class_<Reply>(module, "Reply")
       .def_readonly("stamp_ns", &Reply::stamp_ns)
@@ -113,7 +115,8 @@ void declare_client(py::module_& module) {
                        double voxel_size_m, int interval_ms, int reply_timeout_ms, const std::string& local,
                        const py::object& T_imu_sensor, double still_seconds, bool cold, std::uint64_t seed,
                        std::size_t queue_frames, std::string trace_folder, const py::object& T_base_sensor,
-                       double cpu_share, bool submap, const py::object& on_pose, const py::object& on_reply) {
+                       double cpu_share, bool submap, std::size_t request_bytes, int searching_interval_ms,
+                       const py::object& on_pose, const py::object& on_reply) {
              Options o;
              o.id = std::move(id);
              o.camera = camera;
@@ -132,6 +135,8 @@ void declare_client(py::module_& module) {
              o.trace_folder = std::move(trace_folder);
              o.cpu_share = cpu_share;
              o.submap = submap;
+             o.request_bytes = request_bytes;
+             o.searching_interval_ms = searching_interval_ms;
              return make_client(std::move(o), local, T_imu_sensor, T_base_sensor, on_pose, on_reply);
            }),
            "id"_a, "camera"_a, py::kw_only(), "domain"_a = d.domain,
@@ -140,7 +145,8 @@ void declare_client(py::module_& module) {
            "reply_timeout_ms"_a = d.reply_timeout_ms, "local"_a = "cloud", "T_imu_sensor"_a = py::none(),
            "still_seconds"_a = d.still_seconds, "cold"_a = d.cold, "seed"_a = d.seed,
            "queue_frames"_a = d.queue_frames, "trace_folder"_a = d.trace_folder, "T_base_sensor"_a = py::none(),
-           "cpu_share"_a = d.cpu_share, "submap"_a = d.submap, "on_pose"_a = py::none(),
+           "cpu_share"_a = d.cpu_share, "submap"_a = d.submap, "request_bytes"_a = d.request_bytes,
+           "searching_interval_ms"_a = d.searching_interval_ms, "on_pose"_a = py::none(),
            "on_reply"_a = py::none())
       .def("push_depth", &PythonClient::push_depth, "depth"_a, "stamp_ns"_a)
       .def("push_imu", &PythonClient::push_imu, "stamps_ns"_a, "samples"_a)

@@ -28,7 +28,7 @@ Result<liloc_client_options> known_part(const liloc_client_options* options, std
         "that the header came with, or leave the field alone",
         sizeof(*options));
   liloc_client_options known{};
-  std::memcpy(&known, options, sizeof(known));
+  std::memcpy(&known, options, std::min(size, sizeof(known)));
   return known;
 }
 
@@ -76,6 +76,8 @@ liloc_client_options default_options() {
   o.T_base_sensor = to_c(Pose{});
   o.cpu_share = d.cpu_share;
   o.submap = d.submap;
+  o.request_bytes = d.request_bytes;
+  o.searching_interval_ms = d.searching_interval_ms;
   return o;
 }
 
@@ -106,6 +108,8 @@ Result<Options> options_from(const liloc_client_options* options, std::size_t si
   if (o.has_base) out.T_base_sensor = from_c(o.T_base_sensor);
   out.cpu_share = o.cpu_share;
   out.submap = o.submap;
+  if (o.request_bytes != 0) out.request_bytes = o.request_bytes;  // 0 from programs older than the field
+  out.searching_interval_ms = o.searching_interval_ms;
   return out;
 }
 
@@ -120,6 +124,7 @@ liloc_pose_update to_c(const PoseUpdate& update) {
   u.converged = update.converged;
   u.state = static_cast<std::int32_t>(update.state);
   u.server_connected = update.server_connected;
+  std::copy(update.observed.begin(), update.observed.end(), u.observed);
   return u;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // What crosses the C boundary, in both directions. Structures come with the caller's idea of their size.
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 #include "client/include/liloc/client.h"
@@ -9,9 +10,14 @@
 
 namespace liloc::client::c_api {
 
-/// Structures of the first release ended here: a smaller size is a caller's mistake.
+/// Structures of the first release ended here: a smaller size is a caller's mistake. New fields begin beyond
+/// the old padding, which a caller need not have cleared.
 template <class T>
 constexpr std::size_t kFirstSize = sizeof(T);
+template <>
+constexpr inline std::size_t kFirstSize<liloc_client_options> = offsetof(liloc_client_options, request_bytes);
+template <>
+constexpr inline std::size_t kFirstSize<liloc_pose_update> = offsetof(liloc_pose_update, observed);
 
 constexpr std::size_t kLargestSize = 64 * 1024;  ///< no structure will ever be larger
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/src/byte_budget.hpp"
 #include "client/src/external_odometry.hpp"
 #include "client/src/image_thinning.hpp"
 #include "client/src/informativeness.hpp"
@@ -13,7 +14,6 @@
 #include "client/src/request_schedule.hpp"
 #include "client/src/submap.hpp"
 #include "common/base/log.hpp"
-#include "common/codec/codec.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/geometry/voxel.hpp"
 
@@ -135,9 +135,13 @@ void Engine::Impl::note_motion(const OdometryStep& step) {
 
 void Engine::Impl::add_submap(SpotRequest& r) const {
   const Cloud standing = odometry.map().standing(r.stamp_ns - kSubmapAge, r.stamp_ns);
-  const Cloud extra = outside_view(standing, r.T_odom_sensor, r.view, kSubmapPoints);
-  if (extra.size() < kFewestSurfels) return;
-  if (auto encoded = encode(extra, {.voxel_size_m = 2 * options.voxel_size_m})) r.extra = std::move(*encoded);
+  const auto thinned = [&](std::size_t most) {
+    Cloud extra = outside_view(standing, r.T_odom_sensor, r.view, most);
+    return extra.size() < kFewestSurfels ? Cloud{} : extra;
+  };
+  const std::size_t left = options.request_bytes - r.lpc.bytes.size();
+  auto extra = encode_within(left, kSubmapPoints, 2 * options.voxel_size_m, thinned);
+  if (extra) r.extra = std::move(*extra);  // otherwise the frame says it all
 }
 
 Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cloud* points,
@@ -145,8 +149,8 @@ Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cl
   auto cloud =
       points != nullptr ? Result<Cloud>(*points) : depth_to_cloud(image, options.camera, depth_options());
   if (!cloud) return tl::unexpected(cloud.error());
-  const Cloud thin = voxel_downsample(*cloud, options.voxel_size_m, kLpcPoints);
-  auto lpc = encode(thin, {.voxel_size_m = options.voxel_size_m});
+  const auto thinned = [&](std::size_t most) { return voxel_downsample(*cloud, options.voxel_size_m, most); };
+  auto lpc = encode_within(options.request_bytes, kLpcPoints, options.voxel_size_m, thinned);
   if (!lpc) return tl::unexpected(lpc.error());
   SpotRequest r;
   r.client_id = options.client_id;

@@ -32,6 +32,7 @@ struct EngineOptions {
   Pose T_base_sensor = Pose::Identity();  ///< with external odometry: the sensor on what the odometry moves
   /// Lower bound between registrations while nothing is verified; 0: a quarter of the interval. Cold: none.
   StampNs searching_interval_ns = 0;
+  std::size_t request_bytes = 15'000;  ///< most, of a request's clouds: the surroundings give way first
 };
 
 /// A pose by the odometry of somebody else, in a frame of its own that never jumps.

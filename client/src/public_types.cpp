@@ -1,5 +1,6 @@
 #include "client/src/public_types.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/ids.hpp"
@@ -57,6 +58,10 @@ Status check_ranges(const Options& o) {
     return fail("options.queue_frames is {}; must be 1..100", o.queue_frames);
   if (!(o.cpu_share >= 0.02 && o.cpu_share <= 1))
     return fail("options.cpu_share is {}; must be 0.02..1", o.cpu_share);
+  if (o.request_bytes < 2000 || o.request_bytes > 60'000)
+    return fail("options.request_bytes is {}; must be 2000..60000", o.request_bytes);
+  if (o.searching_interval_ms < 0 || o.searching_interval_ms > 60'000)
+    return fail("options.searching_interval_ms is {}; must be 0..60000", o.searching_interval_ms);
   if (o.T_base_sensor && o.local != Local::external)
     return fail("options.T_base_sensor is for odometry from outside: set options.local to Local::external");
   return {};
@@ -100,6 +105,8 @@ Result<SessionOptions> to_session(const Options& o) {
   s.engine.cold = o.cold;
   s.engine.submap = o.submap;
   s.engine.seed = o.seed;
+  s.engine.request_bytes = o.request_bytes;
+  s.engine.searching_interval_ns = from_ms(o.searching_interval_ms);
   s.queue_frames = o.queue_frames;
   s.trace_folder = o.trace_folder;
   return s;
@@ -115,6 +122,7 @@ PoseUpdate to_public(const FrameResult& frame, Tracking tracking, bool connected
   update.converged = frame.converged;
   update.state = to_public(tracking);
   update.server_connected = connected;
+  std::copy_n(frame.observed.data(), 6, update.observed.begin());
   return update;
 }
 

@@ -127,13 +127,22 @@ Cloud voxel_downsample(const Cloud& cloud, double voxel_size_m, std::size_t most
   }
   std::size_t allowed = 0, kept = 0;
   while (allowed < kVoxelsOfBlock && kept + of_place[allowed] <= most_points) kept += of_place[allowed++];
+  std::size_t every = 1;  // of so many blocks one keeps anything: there are more blocks than points
+  if (allowed == 0 && most_points > 0) {
+    allowed = 1;
+    every = (of_place[0] + most_points - 1) / most_points;
+    kept = most_points;
+  }
   Cloud thin;
   thin.points.reserve(kept);
-  for (std::size_t i = 0; i < ranked.size(); ++i)
-    if (place[i] < allowed) {
+  std::size_t blocks = 0;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    blocks += place[i] == 0 ? 1 : 0;
+    if (place[i] < allowed && (blocks - 1) % every == 0) {
       const Sum& sum = voxels.sums[ranked[i].index];
       thin.points.push_back(sum.point / sum.count);
     }
+  }
   return thin;
 }
 

@@ -28,8 +28,16 @@ FleetCommand fleet_command(const Recording& recording, const ReplayOptions& opti
   for (const DeviceRecording& device : recording.devices) {
     ClientCommand client{
         device.info.id, device.folder / "device.json", trace_folder(options, device.info.id), {}};
-    client.arguments = {"--voxel", voxel,         "--interval-ms", fmt::format("{}", options.interval_ms),
-                        "--local", options.local, "--seed",        seed};
+    client.arguments = {"--voxel",
+                        voxel,
+                        "--interval-ms",
+                        fmt::format("{}", options.interval_ms),
+                        "--searching-interval-ms",
+                        fmt::format("{}", options.searching_interval_ms),
+                        "--local",
+                        options.local,
+                        "--seed",
+                        seed};
     if (options.cold) client.arguments.emplace_back("--cold");
     if (!options.submap) client.arguments.emplace_back("--no-submap");
     fleet.clients.push_back(std::move(client));

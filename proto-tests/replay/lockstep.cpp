@@ -30,6 +30,7 @@ EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions&
   engine.camera = device.info.camera;
   engine.voxel_size_m = options.voxel_m;
   engine.interval_ns = from_ms(options.interval_ms);
+  engine.searching_interval_ns = from_ms(options.searching_interval_ms);
   engine.local = *local_method_from(options.local);
   if (!device.imu.empty()) engine.T_imu_sensor = device.info.T_imu_sensor;
   engine.still_seconds = device.info.still_seconds;

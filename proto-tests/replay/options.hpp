@@ -20,10 +20,11 @@ struct ReplayOptions {
   double sampling = 0.5;
   std::vector<std::string> devices;  ///< ids to replay; empty: all of the recording
   bool cold = false;
-  bool submap = true;              ///< requests carry what the device saw shortly before
-  double clock_ahead_ms = 0;       ///< of the devices: sent so much earlier than stamped; not in lockstep
-  int threads = 1;                 ///< of the server, per request
-  std::filesystem::path programs;  ///< folder of liloc-server and liloc-client; used without lockstep
+  bool submap = true;                ///< requests carry what the device saw shortly before
+  double clock_ahead_ms = 0;         ///< of the devices: sent so much earlier than stamped; not in lockstep
+  int threads = 1;                   ///< of the server, per request
+  double searching_interval_ms = 0;  ///< lower bound while nothing is verified; 0: a quarter of interval_ms
+  std::filesystem::path programs;    ///< folder of liloc-server and liloc-client; used without lockstep
 
   /// Errors name the option, its value and what it may be.
   [[nodiscard]] Result<ReplayOptions> validated() const;

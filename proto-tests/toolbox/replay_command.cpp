@@ -33,6 +33,10 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--seed", options->seed, "Of all randomness")->capture_default_str();
   command->add_option("--interval-ms", options->interval_ms, "Longest time between global registrations")
       ->capture_default_str();
+  command
+      ->add_option("--searching-interval-ms", options->searching_interval_ms,
+                   "Shortest time between them while nothing is verified; 0: a quarter of --interval-ms")
+      ->capture_default_str();
   command->add_option("--voxel", options->voxel_m, "Voxel size in metres")->capture_default_str();
   command
       ->add_option("--method", options->method,

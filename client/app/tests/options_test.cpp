@@ -53,6 +53,14 @@ TEST(ClientCommandLine, AnOdometryTopicLeavesLocalRegistrationToOthers) {
   EXPECT_DOUBLE_EQ(parsed.options->client.T_base_sensor->translation_m[2], 0.5);
 }
 
+TEST(ClientCommandLine, RequestsHaveABoundInTimeAndInBytes) {
+  const auto parsed = parse({"--searching-interval-ms", "350", "--request-bytes", "4000"});
+  ASSERT_TRUE(parsed.options) << parsed.options.error().message;
+  EXPECT_EQ(parsed.options->client.searching_interval_ms, 350);
+  EXPECT_EQ(parsed.options->client.request_bytes, 4000U);
+  EXPECT_FALSE(parse({"--request-bytes", "100"}).options);
+}
+
 TEST(ClientCommandLine, APointsTopicHasAVirtualCamera) {
   const auto parsed = parse({"--points-topic", "/points"});
   ASSERT_TRUE(parsed.options) << parsed.options.error().message;

@@ -102,6 +102,11 @@ typedef struct liloc_client_options {
   liloc_pose T_base_sensor; /* with external odometry: the sensor on what the odometry moves */
   double cpu_share;         /* of one core, 0.02..1; frames are left out to keep it */
   bool submap;              /* requests carry what stands around as well, unless `cold` */
+  uint64_t
+      request_bytes; /* most, of a request's clouds, 2000..60000; 0: 15000. The surroundings give way first */
+  /* Lower bound between global registrations while nothing is verified, 0..60000; 0: a quarter of interval_ms.
+   * An answer then brings the next request forward; not under interval_ms: it does not. */
+  int32_t searching_interval_ms;
 } liloc_client_options;
 
 typedef struct liloc_pose_update {
@@ -114,6 +119,10 @@ typedef struct liloc_pose_update {
   bool converged;           /* its pose was measured, not guessed */
   int32_t state;            /* liloc_state */
   bool server_connected;
+  /* Share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1:
+   * beside a bare wall it is near 0 along the wall, and the pose follows the prediction there. All 0 for a
+   * guess, and with LILOC_LOCAL_EXTERNAL. */
+  double observed[6];
 } liloc_pose_update;
 
 /* Its texts live as long as the callback. */

@@ -82,6 +82,11 @@ struct Options {
   std::optional<Pose> T_base_sensor;  ///< with external odometry: the sensor on what the odometry moves
   bool submap = true;                 ///< requests carry what stands around as well (about 3 kB), unless `cold`
   double cpu_share = 1;               ///< of one core, 0.02..1; frames are left out to keep it
+  /// Most bytes of a request's clouds, 2000..60000; the surroundings give way first, then the frame is thinned.
+  std::size_t request_bytes = 15'000;
+  /// Lower bound between global registrations while nothing is verified, 0..60000; 0: a quarter of interval_ms.
+  /// An answer then brings the next request forward; not under interval_ms: it does not.
+  int searching_interval_ms = 0;
 };
 
 /// searching: never located. tracking: located, the server answers. coasting: located once, and carried on by
@@ -97,6 +102,10 @@ struct PoseUpdate {
   bool converged = false;            ///< its pose was measured, not guessed
   State state = State::searching;
   bool server_connected = false;
+  /// Share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1:
+  /// beside a bare wall it is near 0 along the wall, and the pose follows the prediction there. All 0 for a
+  /// guess, and with Local::external.
+  std::array<double, 6> observed{};
 };
 
 struct Reply {

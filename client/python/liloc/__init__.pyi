@@ -61,6 +61,11 @@ class PoseUpdate:
     def state(self) -> State: ...
     @property
     def server_connected(self) -> bool: ...
+    @property
+    def observed(self) -> npt.NDArray[np.float64]:
+        """6: share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1.
+        Near 0 along a bare wall, where the pose follows the prediction; all 0 for a guess, and with
+        local="external"."""
 
 class Reply:
     @property
@@ -169,6 +174,8 @@ class Client:
         T_base_sensor: Optional[npt.ArrayLike] = None,
         cpu_share: float = 1.0,
         submap: bool = True,
+        request_bytes: int = 15000,
+        searching_interval_ms: int = 0,
         on_pose: Optional[Callable[[PoseUpdate], object]] = None,
         on_reply: Optional[Callable[[Reply], object]] = None,
     ) -> None:

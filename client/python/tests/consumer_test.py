@@ -43,6 +43,8 @@ class Walk(unittest.TestCase):
         self.assertIsNone(newest.T_map_sensor)
         self.assertEqual(newest.state, liloc.State.SEARCHING)
         self.assertTrue(newest.converged and newest.informative and not newest.server_connected)
+        self.assertEqual((newest.observed.dtype, newest.observed.shape), (np.float64, (6,)))
+        self.assertGreater(newest.observed.min(), 0.9)
         measured = np.linalg.inv(poses[0].T_odom_sensor) @ poses[-1].T_odom_sensor
         true = np.linalg.inv(box.T_map_sensor(0)) @ box.T_map_sensor(box.FRAMES - 1)
         print(f"position off by {1e3 * np.linalg.norm(measured[:3, 3] - true[:3, 3]):.1f} mm")
@@ -154,6 +156,8 @@ class Misuse(unittest.TestCase):
     def test_wrong_options_are_named(self):
         for options, text in (({"voxel_size_m": 7}, "voxel_size_m"), ({"local": "lidar"}, "local is 'lidar'"),
                               ({"local": "inertial"}, "T_imu_sensor"), ({"interval_ms": 1}, "interval_ms"),
+                              ({"request_bytes": 1}, "request_bytes"),
+                              ({"searching_interval_ms": -1}, "searching_interval_ms"),
                               ({"name": "no blanks"}, "options.id")):
             with self.assertRaisesRegex(ValueError, text):
                 client(**options)

@@ -55,8 +55,10 @@ TEST(CApiFields, AProblemOfAnyLengthEndsWithAZero) {
 }
 
 TEST(CApiFields, PoseUpdate) {
-  const PoseUpdate update{1, kPose, {{4, 5, 6}, {0, 0, 0, 1}}, 2, true, true, State::coasting, true};
-  const auto& [stamp, T_map_sensor, T_odom_sensor, segment, informative, converged, state, connected] = update;
+  const PoseUpdate update{
+      1, kPose, {{4, 5, 6}, {0, 0, 0, 1}}, 2, true, true, State::coasting, true, {.1, .2, .3, .4, .5, .6}};
+  const auto& [stamp, T_map_sensor, T_odom_sensor, segment, informative, converged, state, connected,
+               observed] = update;
   const liloc_pose_update u = to_c(update);
   EXPECT_EQ(u.stamp_ns, stamp);
   EXPECT_TRUE(u.has_map);
@@ -67,6 +69,28 @@ TEST(CApiFields, PoseUpdate) {
   EXPECT_EQ(u.converged, converged);
   EXPECT_EQ(u.state, static_cast<int>(state));
   EXPECT_EQ(u.server_connected, connected);
+  EXPECT_TRUE(std::equal(observed.begin(), observed.end(), std::begin(u.observed), std::end(u.observed)));
+}
+
+TEST(CApiFields, AProgramOfTheFirstReleaseGetsTheDefaultsOfWhatCameLater) {
+  constexpr std::size_t kThen = kFirstSize<liloc_client_options>;
+  liloc_client_options o = default_options();
+  o.id = "older";
+  o.request_bytes = 77;  // beyond what such a program passes
+  o.searching_interval_ms = 77;
+  const auto options = options_from(&o, kThen);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->request_bytes, Options{}.request_bytes);
+  EXPECT_EQ(options->searching_interval_ms, Options{}.searching_interval_ms);
+  EXPECT_FALSE(options_from(&o, kThen - 1));
+
+  liloc_pose_update u{};
+  u.observed[0] = 77;
+  PoseUpdate update;
+  update.stamp_ns = 5;
+  ASSERT_TRUE(copy_out(to_c(update), &u, kFirstSize<liloc_pose_update>, "liloc_pose_update"));
+  EXPECT_EQ(u.stamp_ns, 5);
+  EXPECT_EQ(u.observed[0], 77);  // not written
 }
 
 TEST(CApiFields, Options) {
@@ -94,10 +118,12 @@ TEST(CApiFields, Options) {
   o.trace_folder = "trace";
   o.submap = false;
   o.cpu_share = 0.5;
+  o.request_bytes = 18;
+  o.searching_interval_ms = 19;
   const auto options = options_from(&o, sizeof o);
   ASSERT_TRUE(options) << options.error().message;
   const auto& [id, camera, domain, interface, peer_list, min_range, max_range, voxel, interval, timeout, local,
-               T_imu, still, cold, seed, queue, trace, T_base, submap, share] = *options;
+               T_imu, still, cold, seed, queue, trace, T_base, submap, share, bytes, searching] = *options;
   EXPECT_EQ(id + interface + trace, "roboteth9trace");
   EXPECT_EQ(camera.width + camera.height, 3);
   EXPECT_EQ(camera.fx + camera.fy + camera.cx + camera.cy + camera.depth_scale_m, 25);
@@ -118,6 +144,8 @@ TEST(CApiFields, Options) {
   EXPECT_EQ(queue, 17U);
   EXPECT_FALSE(submap);
   EXPECT_EQ(share, 0.5);
+  EXPECT_EQ(bytes, 18U);
+  EXPECT_EQ(searching, 19);
 }
 
 }  // namespace

@@ -109,6 +109,9 @@ TEST(ClientOptions, WhatIsWrongIsNamed) {
   EXPECT_THAT(error_of([](Options& o) { o.id = "a b"; }), HasSubstr("options.id"));
   EXPECT_THAT(error_of([](Options& o) { o.camera.fx = -1; }), HasSubstr("options.camera.fx"));
   EXPECT_THAT(error_of([](Options& o) { o.interval_ms = 0; }), HasSubstr("options.interval_ms is 0"));
+  EXPECT_THAT(error_of([](Options& o) { o.searching_interval_ms = -1; }),
+              HasSubstr("searching_interval_ms is -1"));
+  EXPECT_THAT(error_of([](Options& o) { o.request_bytes = 1999; }), HasSubstr("options.request_bytes is 1999"));
   EXPECT_THAT(error_of([](Options& o) { o.voxel_size_m = NAN; }), HasSubstr("options.voxel_size_m"));
   EXPECT_THAT(error_of([](Options& o) { o.local = client::Local::inertial; }), HasSubstr("T_imu_sensor"));
   EXPECT_THAT(error_of([](Options& o) {

@@ -111,6 +111,25 @@ TEST(Engine, TellsWhichAxesTheFrameShowed) {
   EXPECT_GT(frame.observed[5], 0.9);  // sensor z: towards it
 }
 
+TEST(Engine, AnswersBringRequestsForwardUntilOneIsVerified) {
+  Walker walker(engine_options());
+  SpotReply reply;
+  std::vector<int> asked;
+  for (int i = 0; i < 45; ++i) {  // 3 s
+    walker.step();
+    const auto request = walker.engine.take_request();
+    if (!request) continue;
+    asked.push_back(i);
+    reply.seq = request->seq;
+    reply.stamp_ns = request->stamp_ns;
+    const bool third = asked.size() == 3;
+    reply.status = third ? SpotStatus::verified : SpotStatus::provisional;
+    if (third) reply.T_map_odom = Pose::Identity();
+    walker.engine.add_reply(reply);
+  }
+  EXPECT_EQ(asked, (std::vector<int>{0, 3, 6, 18, 30, 42}));  // 0.2 s apart, then 0.8 s
+}
+
 TEST(Engine, ABlockedCameraIsBridgedAndAskedAboutAfterwards) {
   Walker walker(with_imu());
   const Pose first = walker.step().T_odom_sensor;

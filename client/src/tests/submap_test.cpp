@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "client/src/byte_budget.hpp"
 #include "client/src/tests/walk.hpp"
 #include "common/codec/codec.hpp"
+#include "common/geometry/depth.hpp"
+#include "common/geometry/voxel.hpp"
 
 namespace liloc {
 namespace {
@@ -37,6 +40,59 @@ TEST(OutsideView, IsThinnedEvenly) {
   const Cloud extra = outside_view(map, Pose::Identity(), small_view(), 10);
   ASSERT_EQ(extra.size(), 10U);
   EXPECT_FLOAT_EQ(extra.points[1].y(), 0.1F);
+}
+
+TEST(EncodeWithin, TakesAsManyPointsAsFit) {
+  const Cloud cloud = *depth_to_cloud(frame_at(scene::furnished_room(1), 0), scene::small_camera());
+  const auto thinned = [&](std::size_t most) { return voxel_downsample(cloud, 0.05, most); };
+  const auto whole = encode_within(60'000, 4000, 0.05, thinned);
+  ASSERT_TRUE(whole);
+  for (const std::size_t budget : {200UL, 1000UL, 2000UL, 3000UL}) {
+    ASSERT_LT(budget, whole->bytes.size());
+    const auto within = encode_within(budget, 4000, 0.05, thinned);
+    ASSERT_TRUE(within) << within.error().message;
+    EXPECT_LE(within->bytes.size(), budget);
+    EXPECT_GT(within->bytes.size(), budget / 3) << "of " << budget;  // blocks give way as a whole
+  }
+  EXPECT_FALSE(encode_within(10, 4000, 0.05, thinned));
+}
+
+/// What all requests of a walk take, and the newest.
+struct Sent {
+  std::size_t most_bytes = 0, requests = 0;
+  SpotRequest last;
+};
+
+Sent walk_within(std::size_t request_bytes) {
+  EngineOptions options = engine_options();
+  options.request_bytes = request_bytes;
+  Engine engine(options);
+  const auto room = scene::furnished_room(1);
+  Sent sent;
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(engine.add_depth(frame_at(room, i)));
+    auto request = engine.take_request();
+    if (!request) continue;
+    ++sent.requests;
+    sent.most_bytes = std::max(sent.most_bytes, request->lpc.bytes.size() + request->extra.bytes.size());
+    sent.last = std::move(*request);
+  }
+  return sent;
+}
+
+TEST(Submap, RequestsKeepTheirByteBudgetAndTheSurroundingsGiveWayFirst) {
+  const Sent free = walk_within(60'000);
+  const std::size_t frame = free.last.lpc.bytes.size(), extra = free.last.extra.bytes.size();
+  ASSERT_GT(extra, 500U);
+  for (const std::size_t budget : {2000UL, frame, frame + extra / 2, frame + extra}) {
+    const Sent sent = walk_within(budget);
+    EXPECT_EQ(sent.requests, free.requests);
+    EXPECT_LE(sent.most_bytes, budget);
+    EXPECT_LE(sent.last.lpc.bytes.size(), frame);
+    if (budget < frame) continue;
+    EXPECT_EQ(sent.last.lpc.bytes, free.last.lpc.bytes) << budget;
+    EXPECT_EQ(sent.last.extra.bytes.empty(), budget == frame);
+  }
 }
 
 /// A walk about the room: later requests carry walls that the frame does not show, where they are.

@@ -84,6 +84,21 @@ TEST(Voxel, ALimitThinsTheWallAndLeavesThePole) {
                             [&](const Eigen::Vector3f& q) { return (p - q).norm() < 0.051F; }));
 }
 
+TEST(Voxel, MoreBlocksThanPointsAreThinnedEvenly) {
+  Cloud cloud;
+  for (int i = 0; i < 100; ++i) cloud.points.emplace_back(static_cast<float>(i), 0.0F, 0.0F);
+  const Cloud thin = voxel_downsample(cloud, 0.05, 30);  // each point is a block
+  EXPECT_LE(thin.size(), 30U);
+  EXPECT_GE(thin.size(), 25U);
+  float low = 100, high = 0;
+  for (const auto& p : thin.points) {
+    low = std::min(low, p.x());
+    high = std::max(high, p.x());
+  }
+  EXPECT_LT(low, 4);
+  EXPECT_GT(high, 95);
+}
+
 TEST(Voxel, NonFinitePointsAreDropped) {
   Cloud cloud;
   cloud.points = {{0.1F, 0.1F, 0.1F}, {NAN, 0, 0}, {INFINITY, 0, 0}};

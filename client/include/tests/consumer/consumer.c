@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
 
   CHECK(s.poses == FRAME_COUNT);
   CHECK(update.stamp_ns == frame_stamp_ns(FRAME_COUNT - 1) && update.converged);
+  CHECK(update.observed[0] > 0.9 && update.observed[5] > 0.9);
   CHECK(!update.has_map && !update.server_connected && update.state == LILOC_SEARCHING);
   CHECK(distance_m(update.T_odom_sensor.translation_m, s.last.translation_m) == 0);
   printf("liloc %s: walked %.4f m, turned %.4f rad\n", liloc_client_version(),

@@ -76,6 +76,7 @@ int main(int argc, char** argv) {
 
   check(seen.poses == FRAME_COUNT, "a callback for every frame");
   check(newest.stamp_ns == frame_stamp_ns(FRAME_COUNT - 1) && newest.converged, "the newest pose is measured");
+  check(newest.observed[0] > 0.9 && newest.observed[5] > 0.9, "by a frame that shows every motion");
   check(!newest.T_map_sensor && newest.state == State::searching, "without a server there is no global pose");
   const double walked = distance_m(seen.first.translation_m.data(), seen.last.translation_m.data());
   const double turned = angle_rad(seen.first.rotation_xyzw.data(), seen.last.rotation_xyzw.data());

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <unordered_map>
 #include <vector>
 
 #include "common/registration/moving_mask.hpp"
@@ -12,30 +13,32 @@ struct LevelPose {
   int score = 0;
 };
 
-/// Climbs level poses on a field, axis by axis. Pure; the field and the mask outlive it.
+/// Climbs level poses on a field, axis by axis. It remembers the points as turned by each yaw that it has
+/// tried, which is nothing but time saved; one thread. The field and the mask outlive it.
 class Climber {
  public:
   /// Points about the device and their normals, turned into the map's axes at yaw 0.
   Climber(const ScoreField& field, const MovingMask& moving, const Eigen::Vector3d& up_map, const Cloud& level)
-      : field_(field), moving_(moving), up_map_(up_map), level_(level) {}
+      : field_(field), moving_(moving), up_map_(up_map), level_(level), worths_(level.size()) {}
 
   struct Steps {
     double shift_m = 0.1, turn_rad = 0.0436;  ///< at first
     int halvings = 2, rounds = 6;             ///< rounds at most, per size of step
     std::size_t points = 240;                 ///< of the points, the first so many
   };
-  [[nodiscard]] LevelPose climb(const Eigen::Vector4d& from, const Steps& steps) const;
+  [[nodiscard]] LevelPose climb(const Eigen::Vector4d& from, const Steps& steps);
 
  private:
-  struct Turned;  ///< the points at one yaw
-  [[nodiscard]] Turned turned(double yaw_rad, std::size_t points) const;
-  [[nodiscard]] int score(const Turned& turned, const Eigen::Vector4d& pose) const;
-  bool improve(double shift_m, double turn_rad, std::size_t points, Turned* at, LevelPose* best) const;
+  [[nodiscard]] const ScoreField::Probes& turned(double yaw_rad);
+  [[nodiscard]] int score(const Eigen::Vector4d& pose, std::size_t points);
+  bool improve(double shift_m, double turn_rad, std::size_t points, LevelPose* best);
 
   const ScoreField& field_;
   const MovingMask& moving_;
   const Eigen::Vector3d up_map_;
   const Cloud& level_;
+  std::unordered_map<long, ScoreField::Probes> turned_;  ///< by yaw in microradians
+  std::vector<std::int32_t> worths_;
 };
 
 }  // namespace liloc

@@ -4,60 +4,125 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "common/registration/neighbors.hpp"
+#include "common/registration/simd.hpp"
 
 namespace liloc {
 namespace {
 
-using Histogram = Eigen::Matrix<float, kFpfhSize, 1>;
 constexpr int kBins = 11;
+constexpr int kNoBin = kBins;  // of a pair without a Darboux frame
+constexpr int kPart = 12;      // a histogram and what goes nowhere
+constexpr int kStride = 40;    // three of them, filled up to whole registers
 
-int bin(float value, float low, float span) {
-  return std::clamp(static_cast<int>(std::floor(kBins * (value - low) / span)), 0, kBins - 1);
+using Histogram = std::array<float, kStride>;
+
+/// A point's neighbours, filled up to whole registers, and the bins that each pair falls in.
+struct Pairs {
+  std::vector<float> x, y, z, nx, ny, nz;
+  std::vector<std::int32_t> alpha, phi, theta;
+
+  void take(const Cloud& cloud, const std::vector<std::uint32_t>& neighbors) {
+    for (auto* floats : {&x, &y, &z, &nx, &ny, &nz}) floats->resize(neighbors.size());
+    for (auto* bins : {&alpha, &phi, &theta}) bins->resize(neighbors.size());
+    for (std::size_t k = 0; k < neighbors.size(); ++k) {
+      const Eigen::Vector3f& p = cloud.points[neighbors[k]];
+      const Eigen::Vector3f& n = cloud.normals[neighbors[k]];
+      x[k] = p.x(), y[k] = p.y(), z[k] = p.z();
+      nx[k] = n.x(), ny[k] = n.y(), nz[k] = n.z();
+    }
+  }
+};
+
+/// The bin of a cosine.
+[[gnu::always_inline]] inline std::int32_t bin_of(float cosine) {
+  return static_cast<std::int32_t>(std::min(std::max(0.5F * kBins * (cosine + 1), 0.0F), kBins - 0.5F));
 }
 
-/// Adds the three angles of a pair in its Darboux frame; the point whose normal is nearer to the line is the
-/// source.
-void add_pair(const Eigen::Vector3f& p1, const Eigen::Vector3f& n1, const Eigen::Vector3f& p2,
-              const Eigen::Vector3f& n2, Histogram* histogram) {
-  Eigen::Vector3f line = p2 - p1;
-  const float length = line.norm();
-  if (length == 0) return;
-  const float angle1 = n1.dot(line) / length, angle2 = n2.dot(line) / length;
-  const bool swap = std::abs(angle1) < std::abs(angle2);
-  const Eigen::Vector3f& u = swap ? n2 : n1;
-  const Eigen::Vector3f& other = swap ? n1 : n2;
-  if (swap) line = -line;
-  const Eigen::Vector3f v_raw = line.cross(u);
-  const float v_length = v_raw.norm();
-  if (v_length == 0) return;
-  const Eigen::Vector3f v = v_raw / v_length;
-  const Eigen::Vector3f w = u.cross(v);
-  const auto pi = static_cast<float>(M_PI);
-  (*histogram)[bin(std::atan2(w.dot(other), u.dot(other)), -pi, 2 * pi)] += 1;
-  (*histogram)[kBins + bin(v.dot(other), -1, 2)] += 1;
-  (*histogram)[2 * kBins + bin(swap ? -angle2 : angle1, -1, 2)] += 1;
+/// The three angles of the pairs of (p, n) with `count` others in their Darboux frames, as bins. The point
+/// whose normal u is nearer to the line is the source; v = line x u, w = u x v. The first angle,
+/// atan2(w.n, u.n), is found by the edges of its bins at 1, 3, .. 9 elevenths of pi either way, so that no
+/// angle has to be computed.
+LILOC_WIDE void bin_pairs(const float* x, const float* y, const float* z, const float* nx, const float* ny,
+                          const float* nz, int count, const float* p, const float* n, std::int32_t* alpha,
+                          std::int32_t* phi, std::int32_t* theta) {
+  constexpr float kTiny = 1e-30F;
+  const float px = p[0], py = p[1], pz = p[2], hx = n[0], hy = n[1], hz = n[2];
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    const float dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz, tx = nx[i], ty = ny[i], tz = nz[i];
+    const float here = hx * dx + hy * dy + hz * dz, there = tx * dx + ty * dy + tz * dz;
+    const bool swap = std::abs(here) < std::abs(there);
+    const float sign = swap ? -1.0F : 1.0F, u_line = swap ? -there : here;
+    const float ux = swap ? tx : hx, uy = swap ? ty : hy, uz = swap ? tz : hz;
+    const float ox = swap ? hx : tx, oy = swap ? hy : ty, oz = swap ? hz : tz;
+    const float vx = sign * (dy * uz - dz * uy), vy = sign * (dz * ux - dx * uz),
+                vz = sign * (dx * uy - dy * ux);
+    const float wx = uy * vz - uz * vy, wy = uz * vx - ux * vz, wz = ux * vy - uy * vx;
+    const float v_length = std::sqrt(vx * vx + vy * vy + vz * vz);
+    const float length = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const float across = wx * ox + wy * oy + wz * oz;              // |v| times w.n
+    const float along = v_length * (ux * ox + uy * oy + uz * oz);  // |v| times u.n
+    const float upright = std::abs(across);
+    const std::int32_t edges = (0.95949297F * upright >= 0.28173256F * along ? 1 : 0) +
+                               (0.65486073F * upright >= 0.75574957F * along ? 1 : 0) +
+                               (0.14231484F * upright >= 0.98982144F * along ? 1 : 0) +
+                               (-0.41541501F * upright >= 0.90963200F * along ? 1 : 0) +
+                               (-0.84125353F * upright >= 0.54064082F * along ? 1 : 0);
+    const std::int32_t turn = across < 0 ? 5 - edges : 5 + edges;
+    const std::int32_t bin_v = bin_of((vx * ox + vy * oy + vz * oz) / (v_length + kTiny)),
+                       bin_u = bin_of(u_line / (length + kTiny));
+    alpha[i] = v_length > 0 ? turn : kNoBin;
+    phi[i] = v_length > 0 ? bin_v : kNoBin;
+    theta[i] = v_length > 0 ? bin_u : kNoBin;
+  }
 }
 
 /// The simplified histogram of one point: itself against each neighbour, as per cent.
-Histogram simplified(const Cloud& cloud, const RadiusSearch& search, std::uint32_t i) {
-  Histogram histogram = Histogram::Zero();
-  int pairs = 0;
-  search.for_each(cloud.points[i], [&](std::uint32_t j, float) {
-    if (j == i) return;
-    add_pair(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j], &histogram);
-    ++pairs;
-  });
-  return pairs > 0 ? Histogram(histogram * (100.0F / static_cast<float>(pairs))) : histogram;
+Histogram simplified(const Cloud& cloud, std::uint32_t i, const std::vector<std::uint32_t>& neighbors,
+                     Pairs* pairs) {
+  pairs->take(cloud, neighbors);
+  bin_pairs(pairs->x.data(), pairs->y.data(), pairs->z.data(), pairs->nx.data(), pairs->ny.data(),
+            pairs->nz.data(), static_cast<int>(neighbors.size()), cloud.points[i].data(),
+            cloud.normals[i].data(), pairs->alpha.data(), pairs->phi.data(), pairs->theta.data());
+  std::array<std::int32_t, kStride> counts{};
+  for (std::size_t k = 0; k < neighbors.size(); ++k) {
+    ++counts[static_cast<std::size_t>(pairs->alpha[k])];
+    ++counts[static_cast<std::size_t>(kPart + pairs->phi[k])];
+    ++counts[static_cast<std::size_t>(2 * kPart + pairs->theta[k])];
+  }
+  Histogram histogram{};
+  if (neighbors.size() < 2) return histogram;  // the point alone
+  const float percent = 100.0F / static_cast<float>(neighbors.size() - 1);
+  for (std::size_t b = 0; b < kStride; ++b) histogram[b] = percent * static_cast<float>(counts[b]);
+  return histogram;
 }
 
-void normalize(Eigen::Ref<Histogram> histogram) {
+/// Adds up the neighbours' histograms, the nearer the more.
+LILOC_WIDE void weigh(const Histogram* simple, const std::uint32_t* neighbors, const float* squared,
+                      std::size_t count, Histogram* sum) {
+  using Eight = float __attribute__((vector_size(32)));
+  Eight total[kStride / 8] = {};
+  for (std::size_t k = 0; k < count; ++k) {
+    const float weight = squared[k] > 0 ? 1.0F / squared[k] : 0.0F;
+    const float* h = simple[neighbors[k]].data();
+    for (int b = 0; b < kStride / 8; ++b) {
+      Eight part;
+      std::memcpy(&part, h + 8 * b, sizeof part);
+      total[b] += weight * part;
+    }
+  }
+  std::memcpy(sum->data(), total, sizeof total);
+}
+
+void normalize(const Histogram& histogram, Eigen::Ref<Eigen::Matrix<float, kFpfhSize, 1>> descriptor) {
   for (int part = 0; part < 3; ++part) {
-    auto bins = histogram.segment<kBins>(part * kBins);
+    const Eigen::Map<const Eigen::Matrix<float, kBins, 1>> bins(histogram.data() + part * kPart);
     const float sum = bins.sum();
-    if (sum > 0) bins *= 100.0F / sum;
+    descriptor.segment<kBins>(part * kBins) = (sum > 0 ? 100.0F / sum : 0.0F) * bins;
   }
 }
 
@@ -67,22 +132,21 @@ Features fpfh(const Cloud& cloud, const std::vector<std::uint32_t>& index, doubl
   assert(cloud.has_normals() || index.empty());
   Features features{index, {}};
   features.descriptors.setZero(kFpfhSize, static_cast<Eigen::Index>(index.size()));
+  if (index.empty()) return features;
   const RadiusSearch search(cloud.points, radius_m);
   std::vector<Histogram> simple(cloud.size());
-  std::vector<char> done(cloud.size(), 0);
-  for (std::size_t k = 0; k < index.size(); ++k) {
-    Histogram weighted = Histogram::Zero();
-    search.for_each(cloud.points[index[k]], [&](std::uint32_t j, float squared) {
-      if (squared == 0) return;
-      if (done[j] == 0) {
-        simple[j] = simplified(cloud, search, j);
-        done[j] = 1;
-      }
-      weighted += simple[j] / squared;
-    });
-    normalize(weighted);
-    features.descriptors.col(static_cast<Eigen::Index>(k)) = weighted;
-  }
+  Pairs pairs;
+  search.for_each_neighborhood([&](std::uint32_t i, const RadiusSearch::Neighborhood& near) {
+    simple[i] = simplified(cloud, i, near.index, &pairs);
+  });
+  std::vector<std::int32_t> column(cloud.size(), -1);
+  for (std::size_t k = 0; k < index.size(); ++k) column[index[k]] = static_cast<std::int32_t>(k);
+  search.for_each_neighborhood([&](std::uint32_t i, const RadiusSearch::Neighborhood& near) {
+    if (column[i] < 0) return;
+    Histogram sum;
+    weigh(simple.data(), near.index.data(), near.squared.data(), near.index.size(), &sum);
+    normalize(sum, features.descriptors.col(column[i]));
+  });
   return features;
 }
 

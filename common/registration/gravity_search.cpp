@@ -53,8 +53,8 @@ class Best {
 };
 
 /// Offers every place of slab `here` that no neighbour in x, y and z beats. Slabs below and above may be null.
-void offer_maxima(const std::int16_t* below, const std::int16_t* here, const std::int16_t* above, int width,
-                  int height, int z, int yaw, Best* best) {
+void offer_maxima(const std::int16_t* below, const std::vector<std::int16_t>& here, const std::int16_t* above,
+                  int width, int height, int z, int yaw, std::vector<std::uint32_t>* high, Best* best) {
   const auto beaten = [&](const std::int16_t* slab, int x, int y, std::int16_t s) {
     if (slab == nullptr) return false;
     for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
@@ -62,14 +62,15 @@ void offer_maxima(const std::int16_t* below, const std::int16_t* here, const std
         if (slab[v * width + u] > s) return true;
     return false;
   };
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const std::int16_t s = here[y * width + x];
-      if (s <= best->threshold()) continue;
-      if (beaten(here, x, y, s) || beaten(below, x, y, s) || beaten(above, x, y, s)) continue;
-      best->offer({s, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), static_cast<std::int16_t>(z),
-                   static_cast<std::int16_t>(yaw)});
-    }
+  find_above(here, best->threshold(), high);
+  for (const std::uint32_t i : *high) {
+    const std::int16_t s = here[i];
+    const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
+    if (s <= best->threshold()) continue;
+    if (beaten(here.data(), x, y, s) || beaten(below, x, y, s) || beaten(above, x, y, s)) continue;
+    best->offer({s, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), static_cast<std::int16_t>(z),
+                 static_cast<std::int16_t>(yaw)});
+  }
 }
 
 /// Of the cells, best first, those with no better one within a block of about 0.4 m and 10 degrees.
@@ -114,15 +115,14 @@ std::vector<CellOffset> offsets_of(const Cloud& level, const Eigen::Matrix3f& R,
 }
 
 /// Scores every position of one yaw.
-void search_yaw(const ScoreField& field, const std::vector<CellOffset>& offsets, int yaw, RowSums* sums,
-                Best* best) {
+void search_yaw(int depth, int yaw, RowSums* sums, Best* best) {
   std::array<std::vector<std::int16_t>, 3> slabs;  // heights z - 2, z - 1, z
-  const int depth = field.size().z();
+  std::vector<std::uint32_t> high;
   for (int z = 0; z <= depth; ++z) {
-    if (z < depth) slabs[2] = sums->at_height(offsets, z);
+    if (z < depth) slabs[2] = sums->at_height(z);
     if (z > 0)
-      offer_maxima(z > 1 ? slabs[0].data() : nullptr, slabs[1].data(), z < depth ? slabs[2].data() : nullptr,
-                   sums->width(), sums->height(), z - 1, yaw, best);
+      offer_maxima(z > 1 ? slabs[0].data() : nullptr, slabs[1], z < depth ? slabs[2].data() : nullptr,
+                   sums->width(), sums->height(), z - 1, yaw, &high, best);
     std::rotate(slabs.begin(), slabs.begin() + 1, slabs.end());
   }
 }
@@ -138,8 +138,8 @@ std::vector<Cell> search_coarse(const ScoreField& field, const Cloud& level,
     RowSums sums(field);
     for (int yaw = worker; yaw < yaws && std::chrono::steady_clock::now() < deadline; yaw += threads) {
       const Eigen::Matrix3f R = yaw_rotation(yaw * 2 * M_PI / yaws, options.up_map).cast<float>();
-      search_yaw(field, offsets_of(level, R, field.cell_m()), yaw, &sums,
-                 &best[static_cast<std::size_t>(worker)]);
+      sums.take(offsets_of(level, R, field.cell_m()));
+      search_yaw(field.size().z(), yaw, &sums, &best[static_cast<std::size_t>(worker)]);
     }
   };
   {
@@ -153,7 +153,7 @@ std::vector<Cell> search_coarse(const ScoreField& field, const Cloud& level,
 }
 
 /// Climbs all a little, then the best to the top.
-std::vector<LevelPose> climb(const Climber& climber, const ScoreField& coarse, const std::vector<Cell>& cells,
+std::vector<LevelPose> climb(Climber& climber, const ScoreField& coarse, const std::vector<Cell>& cells,
                              const GravitySearchOptions& options) {
   const int yaws = std::max(1, static_cast<int>(std::lround(360.0 / options.yaw_step_deg)));
   std::vector<LevelPose> poses;
@@ -184,7 +184,7 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query,
       Eigen::Quaterniond::FromTwoVectors(up_sensor, options.up_map).toRotationMatrix();
   const Cloud level = level_points(query, R_level_sensor.cast<float>());
   const std::vector<Cell> cells = search_coarse(masked ? *masked : field, level, options);
-  const Climber climber(target->field_fine(), moving, options.up_map, level);
+  Climber climber(target->field_fine(), moving, options.up_map, level);
   std::vector<Candidate> candidates;
   for (const LevelPose& top : climb(climber, field, cells, options)) {
     Candidate candidate;

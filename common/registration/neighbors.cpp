@@ -3,7 +3,21 @@
 #include <algorithm>
 #include <bit>
 
+#include "common/registration/simd.hpp"
+
 namespace liloc {
+namespace {
+
+LILOC_WIDE void squared_distances(const float* xs, const float* ys, const float* zs, std::size_t count, float x,
+                                  float y, float z, float* squared) {
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = xs[i] - x, dy = ys[i] - y, dz = zs[i] - z;
+    squared[i] = dx * dx + dy * dy + dz * dz;
+  }
+}
+
+}  // namespace
 
 RadiusSearch::RadiusSearch(const std::vector<Eigen::Vector3f>& points, double radius_m)
     : radius_(static_cast<float>(radius_m)), inverse_(1.0F / radius_), squared_radius_(radius_ * radius_) {
@@ -32,6 +46,46 @@ RadiusSearch::RadiusSearch(const std::vector<Eigen::Vector3f>& points, double ra
     table_[slot] = {order[begin].first, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
     begin = end;
   }
+}
+
+void RadiusSearch::Points::clear() {
+  index.clear();
+  x.clear();
+  y.clear();
+  z.clear();
+}
+
+void RadiusSearch::Points::add(const Eigen::Vector3f& p, std::uint32_t i) {
+  index.push_back(i);
+  x.push_back(p.x());
+  y.push_back(p.y());
+  z.push_back(p.z());
+}
+
+void RadiusSearch::gather(const Eigen::Vector3i& centre, Points* points) const {
+  points->clear();
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx)
+        if (const Run* run = find(cell_key(centre + Eigen::Vector3i(dx, dy, dz))))
+          for (std::uint32_t i = run->begin; i < run->end; ++i) points->add(sorted_[i], index_[i]);
+}
+
+void RadiusSearch::select(const Points& points, const Eigen::Vector3f& p, Neighborhood* within) const {
+  const std::size_t count = points.index.size();
+  within->index.resize(count);
+  within->squared.resize(count);
+  squared_distances(points.x.data(), points.y.data(), points.z.data(), count, p.x(), p.y(), p.z(),
+                    within->squared.data());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {  // without a branch: which are near is hard to foretell
+    const float squared = within->squared[i];
+    within->index[kept] = points.index[i];
+    within->squared[kept] = squared;
+    kept += squared <= squared_radius_ ? 1 : 0;
+  }
+  within->index.resize(kept);
+  within->squared.resize(kept);
 }
 
 std::optional<RadiusSearch::Neighbor> RadiusSearch::nearest(const Eigen::Vector3f& query) const {

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/voxel.hpp"
@@ -34,22 +35,43 @@ class RadiusSearch {
         }
   }
 
-  /// Calls visit(indices of the cell's points, visitor of candidates) for each occupied cell; the visitor calls
-  /// its argument with every point of the cell and its 26 neighbours: all that can lie within the radius of any
-  /// of them.
+  /// Points about a place as arrays, so that the compiler can work on many at a time.
+  struct Points {
+    std::vector<std::uint32_t> index;  ///< into the given points
+    std::vector<float> x, y, z;
+    void clear();
+    void add(const Eigen::Vector3f& p, std::uint32_t i);
+  };
+  /// Calls visit(indices of the cell's points, candidates) for each occupied cell; the candidates are the
+  /// points of the cell and its 26 neighbours: all that can lie within the radius of any of them.
   template <class Visit>
   void for_each_cell(Visit&& visit) const {
+    Points candidates;
     for (const Run& run : table_) {
       if (run.end == 0) continue;
-      const std::span<const std::uint32_t> own(index_.data() + run.begin, run.end - run.begin);
-      const Eigen::Vector3i centre = cell_of(sorted_[run.begin], inverse_);
-      visit(own, [&](auto&& take) {
-        for (int dz = -1; dz <= 1; ++dz)
-          for (int dy = -1; dy <= 1; ++dy)
-            for (int dx = -1; dx <= 1; ++dx)
-              if (const Run* near = find(cell_key(centre + Eigen::Vector3i(dx, dy, dz))))
-                for (std::uint32_t i = near->begin; i < near->end; ++i) take(sorted_[i]);
-      });
+      gather(cell_of(sorted_[run.begin], inverse_), &candidates);
+      visit(std::span<const std::uint32_t>(index_.data() + run.begin, run.end - run.begin), candidates);
+    }
+  }
+
+  /// The points within the radius of one point, itself among them, in fixed order.
+  struct Neighborhood {
+    std::vector<std::uint32_t> index;
+    std::vector<float> squared;  ///< distance
+  };
+  /// Calls visit(index of a point, its neighborhood) for each point: several times cheaper than to query for
+  /// each, since the points of a cell share their candidates.
+  template <class Visit>
+  void for_each_neighborhood(Visit&& visit) const {
+    Points candidates;
+    Neighborhood within;
+    for (const Run& run : table_) {
+      if (run.end == 0) continue;
+      gather(cell_of(sorted_[run.begin], inverse_), &candidates);
+      for (std::uint32_t i = run.begin; i < run.end; ++i) {
+        select(candidates, sorted_[i], &within);
+        visit(index_[i], std::as_const(within));
+      }
     }
   }
 
@@ -72,6 +94,11 @@ class RadiusSearch {
     }
     return nullptr;
   }
+
+  /// The points of a cell and its 26 neighbours.
+  void gather(const Eigen::Vector3i& centre, Points* points) const;
+  /// Those of them within the radius of `p`.
+  void select(const Points& points, const Eigen::Vector3f& p, Neighborhood* within) const;
 
   float radius_, inverse_, squared_radius_;
   std::vector<Eigen::Vector3f> sorted_;

@@ -9,16 +9,6 @@
 namespace liloc {
 namespace {
 
-/// Candidate neighbours of all points of one cell, as arrays so that the compiler can work on many at a time.
-struct Nearby {
-  std::vector<float> x, y, z;
-  void clear() {
-    x.clear();
-    y.clear();
-    z.clear();
-  }
-};
-
 /// Count, sums and sums of products of the offsets from `p` within the radius. Relative to `p`, single
 /// precision loses nothing.
 LILOC_WIDE std::array<float, 10> moments(const float* xs, const float* ys, const float* zs, int count, float px,
@@ -58,14 +48,7 @@ Cloud with_normals(const Cloud& cloud, const Eigen::Vector3f& sensor_position, c
   const RadiusSearch search(cloud.points, options.radius_m);
   const float squared_radius = search.radius_m() * search.radius_m();
   std::vector<Eigen::Vector3f> normals(cloud.size(), Eigen::Vector3f::Zero());
-  Nearby nearby;
-  search.for_each_cell([&](std::span<const std::uint32_t> own, const auto& visit_candidates) {
-    nearby.clear();
-    visit_candidates([&](const Eigen::Vector3f& p) {
-      nearby.x.push_back(p.x());
-      nearby.y.push_back(p.y());
-      nearby.z.push_back(p.z());
-    });
+  search.for_each_cell([&](std::span<const std::uint32_t> own, const RadiusSearch::Points& nearby) {
     for (const std::uint32_t i : own) {
       const Eigen::Vector3f& p = cloud.points[i];
       const auto m = moments(nearby.x.data(), nearby.y.data(), nearby.z.data(),

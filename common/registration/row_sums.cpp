@@ -1,5 +1,6 @@
 #include "common/registration/row_sums.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -11,24 +12,58 @@ namespace {
 constexpr int kBlock = 32;         // places at once
 constexpr std::size_t kGroup = 8;  // rows that add up in a byte
 
-using Bytes = std::int8_t __attribute__((vector_size(kBlock)));
-using Words = std::int16_t __attribute__((vector_size(2 * kBlock)));
+struct One {  // block at a time
+  using Bytes = std::int8_t __attribute__((vector_size(kBlock)));
+  using Words = std::int16_t __attribute__((vector_size(2 * kBlock)));
+};
+struct Two {  // blocks at a time
+  using Bytes = std::int8_t __attribute__((vector_size(2 * kBlock)));
+  using Words = std::int16_t __attribute__((vector_size(4 * kBlock)));
+};
 
-/// sums[i] = rows[0][i] + rows[1][i] + ... over a whole row; the number of rows is a multiple of kGroup.
-LILOC_WIDE void sum_rows(const std::int8_t* const* rows, std::size_t count, int width, std::int16_t* sums) {
-  for (int x = 0; x < width; x += kBlock) {
-    Words total{};
-    for (std::size_t k = 0; k < count; k += kGroup) {
-      Bytes bytes{};
-      for (std::size_t i = 0; i < kGroup; ++i) {
-        Bytes row;
-        std::memcpy(&row, rows[k + i] + x, sizeof row);
-        bytes += row;
-      }
-      total += __builtin_convertvector(bytes, Words);
-    }
-    std::memcpy(sums + x, &total, sizeof total);
+/// Adds the same places of all rows.
+template <class Blocks>
+[[gnu::always_inline]] inline void sum_block(const std::int8_t* cells, const std::ptrdiff_t* rows,
+                                             std::size_t count, std::int16_t* sums) {
+  using Bytes = typename Blocks::Bytes;
+  using Words = typename Blocks::Words;
+  Words total{};
+  const auto add = [&](std::size_t k, Bytes* bytes) {
+    Bytes row;
+    std::memcpy(&row, cells + rows[k], sizeof row);
+    *bytes += row;
+  };
+  std::size_t k = 0;
+  for (; k + kGroup <= count; k += kGroup) {
+    Bytes bytes{};
+    for (std::size_t i = 0; i < kGroup; ++i) add(k + i, &bytes);
+    total += __builtin_convertvector(bytes, Words);
   }
+  Bytes bytes{};
+  for (; k < count; ++k) add(k, &bytes);
+  total += __builtin_convertvector(bytes, Words);
+  std::memcpy(sums, &total, sizeof total);
+}
+
+/// sums[i] = cells[rows[0] + i] + cells[rows[1] + i] + ... over a whole row.
+LILOC_WIDE void sum_rows(const std::int8_t* cells, const std::ptrdiff_t* rows, std::size_t count, int width,
+                         std::int16_t* sums) {
+  int x = 0;
+  for (; x + 2 * kBlock <= width; x += 2 * kBlock) sum_block<Two>(cells + x, rows, count, sums + x);
+  if (x < width) sum_block<One>(cells + x, rows, count, sums + x);
+}
+
+/// Which blocks hold a value above the threshold; `found` has room for all. Returns how many do.
+LILOC_WIDE std::size_t blocks_above(const std::int16_t* values, std::size_t blocks, std::int16_t threshold,
+                                    std::uint32_t* found) {
+  std::size_t count = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    std::int16_t most = values[b * kBlock];
+    for (std::size_t i = 1; i < kBlock; ++i) most = std::max(most, values[b * kBlock + i]);
+    found[count] = static_cast<std::uint32_t>(b);
+    count += most > threshold ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace
@@ -37,22 +72,41 @@ RowSums::RowSums(const ScoreField& field)
     : field_(field),
       width_((field.size().x() + kBlock - 1) / kBlock * kBlock),
       height_(field.size().y()),
-      zeros_(static_cast<std::size_t>(width_ + 2 * field.pad()), 0),
       sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
 
-const std::vector<std::int16_t>& RowSums::at_height(const std::vector<CellOffset>& offsets, int z) {
+void RowSums::take(std::vector<CellOffset> offsets) {
+  offsets_ = std::move(offsets);
+  std::erase_if(offsets_, [&](const CellOffset& o) { return std::abs(o.x) > field_.pad(); });
+  std::ranges::stable_sort(offsets_, {}, &CellOffset::y);
+}
+
+const std::vector<std::int16_t>& RowSums::at_height(int z) {
+  const std::int8_t* cells = field_.row(0, 0, 0);
+  const std::ptrdiff_t stride = field_.stride();
+  rows_.clear();
+  rows_y_.clear();
+  for (const CellOffset& o : offsets_) {
+    if (z + o.z < 0 || z + o.z >= field_.size().z()) continue;
+    rows_.push_back(field_.row(0, z + o.z, o.plane) - cells + o.y * stride + o.x);
+    rows_y_.push_back(o.y);
+  }
   for (int y = 0; y < height_; ++y) {
-    rows_.clear();
-    for (const CellOffset& o : offsets) {
-      const int row_z = z + o.z, row_y = y + o.y;
-      if (row_z < 0 || row_z >= field_.size().z() || row_y < 0 || row_y >= height_) continue;
-      if (std::abs(o.x) > field_.pad()) continue;
-      rows_.push_back(field_.row(row_y, row_z, o.plane) + o.x);
-    }
-    while (rows_.size() % kGroup != 0) rows_.push_back(zeros_.data());
-    sum_rows(rows_.data(), rows_.size(), width_, sums_.data() + static_cast<std::ptrdiff_t>(y) * width_);
+    const auto first = std::ranges::lower_bound(rows_y_, -y) - rows_y_.begin();
+    const auto last = std::ranges::lower_bound(rows_y_, height_ - y) - rows_y_.begin();
+    sum_rows(cells + y * stride, rows_.data() + first, static_cast<std::size_t>(last - first), width_,
+             sums_.data() + static_cast<std::ptrdiff_t>(y) * width_);
   }
   return sums_;
+}
+
+void find_above(const std::vector<std::int16_t>& sums, int threshold, std::vector<std::uint32_t>* found) {
+  const std::size_t blocks = sums.size() / kBlock;
+  std::vector<std::uint32_t> above(blocks);
+  above.resize(blocks_above(sums.data(), blocks, static_cast<std::int16_t>(threshold), above.data()));
+  found->clear();
+  for (const std::uint32_t b : above)
+    for (std::uint32_t i = b * kBlock; i < (b + 1) * kBlock; ++i)
+      if (sums[i] > threshold) found->push_back(i);
 }
 
 }  // namespace liloc

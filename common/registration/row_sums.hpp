@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,17 +18,22 @@ struct CellOffset {
 class RowSums {
  public:
   explicit RowSums(const ScoreField& field);
-  /// Offsets whose |x| exceeds the field's padding are left out.
-  const std::vector<std::int16_t>& at_height(const std::vector<CellOffset>& offsets, int z);
+  /// The device points from now on. Those whose |x| exceeds the field's padding are left out.
+  void take(std::vector<CellOffset> offsets);
+  [[nodiscard]] const std::vector<std::int16_t>& at_height(int z);
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
  private:
   const ScoreField& field_;
   int width_, height_;
-  std::vector<std::int8_t> zeros_;
+  std::vector<CellOffset> offsets_;   ///< by rising y: those inside the field at one y are neighbours
+  std::vector<int> rows_y_;           ///< of the offsets inside at one z ...
+  std::vector<std::ptrdiff_t> rows_;  ///< ... and where their rows start for y = 0, from the field's first cell
   std::vector<std::int16_t> sums_;
-  std::vector<const std::int8_t*> rows_;
 };
+
+/// Indices of the sums above `threshold`, rising.
+void find_above(const std::vector<std::int16_t>& sums, int threshold, std::vector<std::uint32_t>* found);
 
 }  // namespace liloc

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/registration/simd.hpp"
+
 namespace liloc {
 namespace {
 
@@ -34,6 +36,29 @@ void planes_of(const Eigen::Vector3f* normal, std::vector<int>* planes) {
   for (int plane = 0; plane < ScoreField::kDirections; ++plane)
     if (normal == nullptr || normal->dot(kDirectionOf[static_cast<std::size_t>(plane)]) > kSameWay)
       planes->push_back(plane);
+}
+
+/// A grid of cells as a kernel sees it.
+struct Lattice {
+  float origin[3], extent[3], inverse;
+  std::int32_t stride_y, stride_z, stride_plane, first, none;  ///< `none`: a cell that is always 0
+};
+
+LILOC_WIDE void cells_of(const Lattice& l, const float* x, const float* y, const float* z,
+                         const std::int32_t* plane, const float* shift, std::size_t count,
+                         std::int32_t* cells) {
+  const float sx = shift[0], sy = shift[1], sz = shift[2];
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) {
+    const float qx = (x[i] + sx - l.origin[0]) * l.inverse, qy = (y[i] + sy - l.origin[1]) * l.inverse,
+                qz = (z[i] + sz - l.origin[2]) * l.inverse;
+    const bool inside =
+        (qx >= 0) & (qy >= 0) & (qz >= 0) & (qx < l.extent[0]) & (qy < l.extent[1]) & (qz < l.extent[2]);
+    const std::int32_t cell = plane[i] * l.stride_plane + static_cast<std::int32_t>(qz) * l.stride_z +
+                              static_cast<std::int32_t>(qy) * l.stride_y + static_cast<std::int32_t>(qx) +
+                              l.first;
+    cells[i] = inside ? cell : l.none;
+  }
 }
 
 }  // namespace
@@ -133,6 +158,22 @@ void ScoreField::weigh_surfaces() {
         if (cells[i] > 0) cells[i] = static_cast<std::int8_t>(std::lround(weight * cells[i]));
     }
   }
+}
+
+void ScoreField::look_up(const Probes& probes, const Eigen::Vector3f& shift,
+                         std::span<std::int32_t> worths) const {
+  const std::int32_t layer = stride_ * size_.y();
+  const Lattice lattice{{origin_.x(), origin_.y(), origin_.z()},
+                        {extent_.x(), extent_.y(), extent_.z()},
+                        inverse_,
+                        stride_,
+                        layer,
+                        layer * size_.z(),
+                        pad_,
+                        static_cast<std::int32_t>(cells_.size()) - 1};  // read ahead alone
+  cells_of(lattice, probes.x.data(), probes.y.data(), probes.z.data(), probes.plane.data(), shift.data(),
+           worths.size(), worths.data());
+  for (std::int32_t& worth : worths) worth = cells_[static_cast<std::size_t>(worth)];
 }
 
 void ScoreField::forget_free_space(const std::vector<std::uint8_t>& cells) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/geometry/cloud.hpp"
@@ -38,6 +39,14 @@ class ScoreField {
     return cells_[index(static_cast<int>(q.x()), static_cast<int>(q.y()), static_cast<int>(q.z()), plane)];
   }
 
+  /// Points as arrays, and the plane that each is looked up in.
+  struct Probes {
+    std::vector<float> x, y, z;
+    std::vector<std::int32_t> plane;
+  };
+  /// What the first of the probes, one per `worths`, are worth when they are shifted: `at` for many points.
+  void look_up(const Probes& probes, const Eigen::Vector3f& shift, std::span<std::int32_t> worths) const;
+
   /// Makes free space unknown where `cells` (x fastest, one per cell of a plane) are not 0.
   void forget_free_space(const std::vector<std::uint8_t>& cells);
 
@@ -46,6 +55,7 @@ class ScoreField {
   [[nodiscard]] int pad() const { return pad_; }
   [[nodiscard]] const Eigen::Vector3f& origin() const { return origin_; }  ///< corner of cell (0,0,0)
   [[nodiscard]] const Eigen::Vector3i& size() const { return size_; }      ///< cells
+  [[nodiscard]] int stride() const { return stride_; }                     ///< cells from a row to the next
   /// The cell x = 0 of a row; x may run from -pad to size + pad + 31.
   [[nodiscard]] const std::int8_t* row(int y, int z, int plane) const {
     return cells_.data() + index(0, y, z, plane);

@@ -21,9 +21,10 @@ TEST_P(FieldLaw, RowsAddUpToWhatPlacesScoreOneByOne) {
     offsets.push_back({within(30), within(30), within(10), static_cast<int>(rng() % ScoreField::kDirections)});
   }
   RowSums sums(field);
+  sums.take(offsets);
   const auto cell = static_cast<float>(field.cell_m());
   for (const int z : {0, 3, field.size().z() - 1}) {
-    const auto& got = sums.at_height(offsets, z);
+    const auto& got = sums.at_height(z);
     for (int y = 0; y < field.size().y(); y += 3)
       for (int x = 0; x < field.size().x(); ++x) {
         int expected = 0;
@@ -33,6 +34,40 @@ TEST_P(FieldLaw, RowsAddUpToWhatPlacesScoreOneByOne) {
         }
         ASSERT_EQ(got[static_cast<std::size_t>(y * sums.width() + x)], expected) << x << " " << y << " " << z;
       }
+  }
+}
+
+TEST_P(FieldLaw, ManyProbesAreWorthWhatEachIs) {
+  const WatchedRoom w = watched_room(GetParam());
+  const ScoreField& field = w.target->field_fine();
+  const Eigen::Vector3f shift(0.31F, -0.17F, 0.05F);
+  ScoreField::Probes probes;
+  std::mt19937_64 rng(GetParam());
+  std::uniform_real_distribution<float> anywhere(-2, 8);  // some of it outside of the room
+  for (int i = 0; i < 8003; ++i) {
+    probes.x.push_back(anywhere(rng));
+    probes.y.push_back(anywhere(rng));
+    probes.z.push_back(anywhere(rng));
+    probes.plane.push_back(static_cast<int>(rng() % ScoreField::kDirections));
+  }
+  std::vector<std::int32_t> worths(8001);
+  field.look_up(probes, shift, worths);
+  for (std::size_t i = 0; i < worths.size(); ++i)
+    ASSERT_EQ(worths[i],
+              field.at(Eigen::Vector3f(probes.x[i], probes.y[i], probes.z[i]) + shift, probes.plane[i]));
+  EXPECT_GT(std::count_if(worths.begin(), worths.end(), [](int v) { return v != 0; }), 50);
+}
+
+TEST_P(FieldLaw, FindsTheSumsAboveAThreshold) {
+  std::mt19937_64 rng(GetParam());
+  std::vector<std::int16_t> sums(32 * 40);
+  for (auto& s : sums) s = static_cast<std::int16_t>(rng() % 2001) - 1000;
+  for (const int threshold : {-1001, 0, 990, 1000}) {
+    std::vector<std::uint32_t> expected, found;
+    for (std::uint32_t i = 0; i < sums.size(); ++i)
+      if (sums[i] > threshold) expected.push_back(i);
+    find_above(sums, threshold, &found);
+    EXPECT_EQ(found, expected);
   }
 }
 
@@ -106,7 +141,7 @@ TEST_P(FieldLaw, ClimbingEndsNearTheDeviceAndNeverLower) {
   Pose level = Pose::Identity();
   level.linear() = R;
   const Cloud points = transformed(level, w.query.sparse);
-  const Climber climber(w.target->field_fine(), nobody, Eigen::Vector3d::UnitZ(), points);
+  Climber climber(w.target->field_fine(), nobody, Eigen::Vector3d::UnitZ(), points);
   const Eigen::Matrix3d turn = w.T_map_device.linear() * R.transpose();
   const double yaw = std::atan2(turn(1, 0), turn(0, 0));
   Eigen::Vector4d start;

@@ -8,6 +8,8 @@
 #include <random>
 #include <thread>
 
+#include "common/registration/feature_match.hpp"
+
 namespace liloc {
 namespace {
 
@@ -15,30 +17,20 @@ struct Match {
   Eigen::Vector3f source, target, source_normal, target_normal;
 };
 
-/// Nearest descriptor of the cell for each query feature, by one matrix product.
-std::vector<Match> match_features(const Described& query, const Described& target,
-                                  const std::vector<std::uint32_t>& cell) {
-  const auto columns = static_cast<Eigen::Index>(cell.size());
-  Eigen::Matrix<float, kFpfhSize, Eigen::Dynamic> picked(kFpfhSize, columns);
-  for (Eigen::Index i = 0; i < columns; ++i)
-    picked.col(i) = target.features.descriptors.col(cell[static_cast<std::size_t>(i)]);
-  const Eigen::VectorXf half_squared = 0.5F * picked.colwise().squaredNorm().transpose();
+using Nearest = std::vector<FeatureBlock::Nearest>;
+
+/// Each query feature with the nearest that any tile of the cell has.
+std::vector<Match> matches_in(const Described& query, const Described& target,
+                              const std::vector<std::uint32_t>& cell, const std::vector<Nearest>& nearest) {
   std::vector<Match> matches;
   matches.reserve(query.features.size());
-  constexpr Eigen::Index kBlock = 64;  // the product of a block stays in cache
-  const auto count = static_cast<Eigen::Index>(query.features.size());
-  for (Eigen::Index begin = 0; begin < count; begin += kBlock) {
-    const Eigen::Index size = std::min(kBlock, count - begin);
-    Eigen::MatrixXf similarity = picked.transpose() * query.features.descriptors.middleCols(begin, size);
-    similarity.colwise() -= half_squared;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      Eigen::Index best = 0;
-      similarity.col(i).maxCoeff(&best);
-      const std::uint32_t s = query.features.index[static_cast<std::size_t>(begin + i)];
-      const std::uint32_t t = target.features.index[cell[static_cast<std::size_t>(best)]];
-      matches.push_back(
-          {query.cloud.points[s], target.cloud.points[t], query.cloud.normals[s], target.cloud.normals[t]});
-    }
+  for (std::size_t i = 0; i < query.features.size(); ++i) {
+    FeatureBlock::Nearest best;
+    for (const std::uint32_t tile : cell)
+      if (nearest[tile][i].closeness > best.closeness) best = nearest[tile][i];
+    const std::uint32_t s = query.features.index[i], t = target.features.index[best.column];
+    matches.push_back(
+        {query.cloud.points[s], target.cloud.points[t], query.cloud.normals[s], target.cloud.normals[t]});
   }
   return matches;
 }
@@ -77,6 +69,18 @@ float field_score(const ScoreField& field, const std::vector<Eigen::Vector3f>& p
     if (++seen == 60 && static_cast<float>(sum) < 0.6F * floor * 60) return -1e9F;
   }
   return static_cast<float>(sum) / static_cast<float>(std::max(seen, 1));
+}
+
+/// work(0), work(1), .. work(count - 1), by so many threads.
+template <class Work>
+void for_each_index(std::size_t count, int threads, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  const auto take = [&] {
+    for (std::size_t i = next++; i < count; i = next++) work(i);
+  };
+  std::vector<std::jthread> pool;
+  for (int t = 1; t < std::clamp(threads, 1, 64); ++t) pool.emplace_back(take);
+  take();
 }
 
 std::vector<Candidate> ransac(const ScoreField& field, const std::vector<Eigen::Vector3f>& points,
@@ -123,35 +127,39 @@ Described describe(const Cloud& thinned, const DescribeOptions& options) {
   return result;
 }
 
-std::vector<std::vector<std::uint32_t>> partition(const Described& described, double cell_m,
-                                                  std::size_t min_points) {
-  std::vector<std::vector<std::uint32_t>> cells;
+Partition partition(const Described& described, double cell_m, std::size_t min_points) {
+  Partition result;
   const auto& index = described.features.index;
-  std::vector<std::uint32_t> all(index.size());
-  std::iota(all.begin(), all.end(), 0U);
   Eigen::AlignedBox3f box;
   for (const std::uint32_t i : index) box.extend(described.cloud.points[i]);
-  if (index.empty()) return {all};
+  if (index.empty()) return {{{}}, {{0}}};
   const auto half = static_cast<float>(cell_m);
-  const int nx = std::max(1, static_cast<int>(box.sizes().x() / half)),
-            ny = std::max(1, static_cast<int>(box.sizes().y() / half));
-  std::vector<int> held(index.size(), 0);  // by how many kept cells
-  for (int x = 1; x <= nx; ++x)
-    for (int y = 1; y <= ny; ++y) {
-      const Eigen::Vector2f centre = box.min().head<2>() + half * Eigen::Vector2f(x, y);
-      std::vector<std::uint32_t> cell;
-      std::size_t fresh = 0;
-      for (const std::uint32_t k : all) {
-        if (((described.cloud.points[index[k]].head<2>() - centre).array().abs() > half).any()) continue;
-        cell.push_back(k);
-        fresh += held[k] == 0;
+  const Eigen::Array2i last = (box.sizes().head<2>().array() / half).cast<int>().max(1);  // tile of each axis
+  const auto number = [&](int x, int y) { return static_cast<std::uint32_t>(x * (last.y() + 1) + y); };
+  result.tiles.resize(static_cast<std::size_t>((last + 1).prod()));
+  for (std::uint32_t k = 0; k < index.size(); ++k) {
+    const Eigen::Array2f at = (described.cloud.points[index[k]] - box.min()).head<2>() / half;
+    const Eigen::Array2i tile = at.cast<int>().min(last);
+    result.tiles[number(tile.x(), tile.y())].push_back(k);
+  }
+  std::vector<bool> held(result.tiles.size(), false);  // by a kept cell
+  for (int x = 1; x <= last.x(); ++x)
+    for (int y = 1; y <= last.y(); ++y) {
+      const std::vector<std::uint32_t> cell{number(x - 1, y - 1), number(x - 1, y), number(x, y - 1),
+                                            number(x, y)};
+      std::size_t size = 0, fresh = 0;
+      for (const std::uint32_t tile : cell) {
+        size += result.tiles[tile].size();
+        fresh += held[tile] ? 0 : result.tiles[tile].size();
       }
-      if (cell.size() < min_points || fresh * 20 < cell.size()) continue;  // too few, or redundant
-      for (const std::uint32_t k : cell) ++held[k];
-      cells.push_back(std::move(cell));
+      if (size == 0 || size < min_points || fresh * 20 < size) continue;  // too few, or redundant
+      for (const std::uint32_t tile : cell) held[tile] = true;
+      result.cells.push_back(cell);
     }
-  if (cells.empty()) cells.push_back(std::move(all));
-  return cells;
+  if (!result.cells.empty()) return result;
+  result.cells.emplace_back(result.tiles.size());
+  std::iota(result.cells.front().begin(), result.cells.front().end(), 0U);
+  return result;
 }
 
 std::vector<Candidate> feature_search(const Target& target, const Described& target_described,
@@ -159,21 +167,18 @@ std::vector<Candidate> feature_search(const Target& target, const Described& tar
                                       const FeatureSearchOptions& options) {
   if (query_described.features.size() < 3 || target_described.features.size() < 3) return {};
   const double cell_m = options.grid ? options.cell_m : 1e6;
-  const auto cells = partition(target_described, cell_m, query_described.features.size() / 8);
+  const auto [tiles, cells] = partition(target_described, cell_m, query_described.features.size() / 8);
   const int iterations = std::max(1000, options.iterations / static_cast<int>(cells.size()));
+  std::vector<Nearest> nearest(tiles.size(), Nearest(query_described.features.size()));
+  for_each_index(tiles.size(), options.threads, [&, &tiles = tiles](std::size_t i) {
+    FeatureBlock(target_described.features, tiles[i]).improve(query_described.features, &nearest[i]);
+  });
   std::vector<std::vector<Candidate>> found(cells.size());
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < cells.size(); i = next++)
-      found[i] = ransac(target->field_fine(), query.sparse.points,
-                        match_features(query_described, target_described, cells[i]), iterations, options,
-                        options.seed * 1000003 + i);
-  };
-  {
-    std::vector<std::jthread> pool;
-    for (int t = 1; t < std::clamp(options.threads, 1, 64); ++t) pool.emplace_back(work);
-    work();
-  }
+  for_each_index(cells.size(), options.threads, [&, &cells = cells](std::size_t i) {
+    found[i] = ransac(target->field_fine(), query.sparse.points,
+                      matches_in(query_described, target_described, cells[i], nearest), iterations, options,
+                      options.seed * 1000003 + i);
+  });
   std::vector<Candidate> all;
   for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
   return distinct(std::move(all), options.propose);

@@ -40,8 +40,12 @@ struct FeatureSearchOptions {
                                                     const Query& query, const Described& query_described,
                                                     const FeatureSearchOptions& options = {});
 
-/// Overlapping square cells over x and y as lists of feature columns; at least one.
-[[nodiscard]] std::vector<std::vector<std::uint32_t>> partition(const Described& described, double cell_m,
-                                                                std::size_t min_points);
+/// Square tiles over x and y, and overlapping cells of up to four of them.
+struct Partition {
+  std::vector<std::vector<std::uint32_t>> tiles;  ///< feature columns; each column is in one tile
+  std::vector<std::vector<std::uint32_t>> cells;  ///< tiles; at least one cell
+};
+/// Cells twice `cell_m` wide, without those of too few points or that others cover.
+[[nodiscard]] Partition partition(const Described& described, double cell_m, std::size_t min_points);
 
 }  // namespace liloc

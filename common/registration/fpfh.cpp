@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <span>
 
 #include "common/registration/neighbors.hpp"
 #include "common/registration/simd.hpp"
@@ -25,7 +26,7 @@ struct Pairs {
   std::vector<float> x, y, z, nx, ny, nz;
   std::vector<std::int32_t> alpha, phi, theta;
 
-  void take(const Cloud& cloud, const std::vector<std::uint32_t>& neighbors) {
+  void take(const Cloud& cloud, std::span<const std::uint32_t> neighbors) {
     for (auto* floats : {&x, &y, &z, &nx, &ny, &nz}) floats->resize(neighbors.size());
     for (auto* bins : {&alpha, &phi, &theta}) bins->resize(neighbors.size());
     for (std::size_t k = 0; k < neighbors.size(); ++k) {
@@ -37,9 +38,9 @@ struct Pairs {
   }
 };
 
-/// The bin of a cosine.
+/// The bin of a cosine; what is no number falls in the first.
 [[gnu::always_inline]] inline std::int32_t bin_of(float cosine) {
-  return static_cast<std::int32_t>(std::min(std::max(0.5F * kBins * (cosine + 1), 0.0F), kBins - 0.5F));
+  return static_cast<std::int32_t>(std::min(std::max(0.0F, 0.5F * kBins * (cosine + 1)), kBins - 0.5F));
 }
 
 /// The three angles of the pairs of (p, n) with `count` others in their Darboux frames, as bins. The point
@@ -82,7 +83,7 @@ LILOC_WIDE void bin_pairs(const float* x, const float* y, const float* z, const 
 }
 
 /// The simplified histogram of one point: itself against each neighbour, as per cent.
-Histogram simplified(const Cloud& cloud, std::uint32_t i, const std::vector<std::uint32_t>& neighbors,
+Histogram simplified(const Cloud& cloud, std::uint32_t i, std::span<const std::uint32_t> neighbors,
                      Pairs* pairs) {
   pairs->take(cloud, neighbors);
   bin_pairs(pairs->x.data(), pairs->y.data(), pairs->z.data(), pairs->nx.data(), pairs->ny.data(),

@@ -71,21 +71,24 @@ void RadiusSearch::gather(const Eigen::Vector3i& centre, Points* points) const {
           for (std::uint32_t i = run->begin; i < run->end; ++i) points->add(sorted_[i], index_[i]);
 }
 
-void RadiusSearch::select(const Points& points, const Eigen::Vector3f& p, Neighborhood* within) const {
+RadiusSearch::Neighborhood RadiusSearch::select(const Points& points, const Eigen::Vector3f& p,
+                                                Selection* near) const {
   const std::size_t count = points.index.size();
-  within->index.resize(count);
-  within->squared.resize(count);
-  squared_distances(points.x.data(), points.y.data(), points.z.data(), count, p.x(), p.y(), p.z(),
-                    within->squared.data());
+  if (near->index.size() < count) {
+    near->index.resize(count);
+    near->squared.resize(count);
+  }
+  std::uint32_t* index = near->index.data();
+  float* distances = near->squared.data();
+  squared_distances(points.x.data(), points.y.data(), points.z.data(), count, p.x(), p.y(), p.z(), distances);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {  // without a branch: which are near is hard to foretell
-    const float squared = within->squared[i];
-    within->index[kept] = points.index[i];
-    within->squared[kept] = squared;
+    const float squared = distances[i];
+    index[kept] = points.index[i];
+    distances[kept] = squared;
     kept += squared <= squared_radius_ ? 1 : 0;
   }
-  within->index.resize(kept);
-  within->squared.resize(kept);
+  return {{index, kept}, {distances, kept}};
 }
 
 std::optional<RadiusSearch::Neighbor> RadiusSearch::nearest(const Eigen::Vector3f& query) const {

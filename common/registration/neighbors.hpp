@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "common/geometry/voxel.hpp"
@@ -56,21 +55,20 @@ class RadiusSearch {
 
   /// The points within the radius of one point, itself among them, in fixed order.
   struct Neighborhood {
-    std::vector<std::uint32_t> index;
-    std::vector<float> squared;  ///< distance
+    std::span<const std::uint32_t> index;
+    std::span<const float> squared;  ///< distance
   };
   /// Calls visit(index of a point, its neighborhood) for each point: several times cheaper than to query for
   /// each, since the points of a cell share their candidates.
   template <class Visit>
   void for_each_neighborhood(Visit&& visit) const {
     Points candidates;
-    Neighborhood within;
+    Selection near;
     for (const Run& run : table_) {
       if (run.end == 0) continue;
       gather(cell_of(sorted_[run.begin], inverse_), &candidates);
       for (std::uint32_t i = run.begin; i < run.end; ++i) {
-        select(candidates, sorted_[i], &within);
-        visit(index_[i], std::as_const(within));
+        visit(index_[i], select(candidates, sorted_[i], &near));
       }
     }
   }
@@ -97,8 +95,12 @@ class RadiusSearch {
 
   /// The points of a cell and its 26 neighbours.
   void gather(const Eigen::Vector3i& centre, Points* points) const;
-  /// Those of them within the radius of `p`.
-  void select(const Points& points, const Eigen::Vector3f& p, Neighborhood* within) const;
+  /// Those of them within the radius of `p`, kept in `near`, whose memory only grows.
+  struct Selection {
+    std::vector<std::uint32_t> index;
+    std::vector<float> squared;
+  };
+  [[nodiscard]] Neighborhood select(const Points& points, const Eigen::Vector3f& p, Selection* near) const;
 
   float radius_, inverse_, squared_radius_;
   std::vector<Eigen::Vector3f> sorted_;

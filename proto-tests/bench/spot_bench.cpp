@@ -153,7 +153,10 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   liloc::bench::Options options;
-  CLI::App app{"Spots on simulated sites: success by overlap, wrong verified answers, latency"};
+  CLI::App app{
+      "Spots on simulated sites: success by overlap, wrong verified answers, latency. The room is prepared "
+      "before each request, as the server does beside its requests; what that takes is a figure of its own. "
+      "On a busy machine compare CPU times, not latencies."};
   app.add_option("--sites", options.sites, "Number of sites")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

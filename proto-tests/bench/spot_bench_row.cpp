@@ -4,9 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
+#include <ctime>
 #include <fstream>
 
 namespace liloc::bench {
+
+double thread_cpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
 
 Row judged(SpotReply reply, const Pose& T_map_sensor_true) {
   Row row;
@@ -24,13 +31,15 @@ Row judged(SpotReply reply, const Pose& T_map_sensor_true) {
 Status write_csv(const std::string& path, const std::vector<Row>& rows) {
   std::ofstream out(path);
   out << "site,seed,client,seq,cold,overlap_truth,error_deg,error_m,status,reason,fitness,overlap,margin,"
-         "latency_ms,nees,ex_rad,ey_rad,ez_rad,ex_m,ey_m,ez_m,sx_rad,sy_rad,sz_rad,sx_m,sy_m,sz_m,text\n";
+         "latency_ms,cpu_ms,prepare_ms,nees,ex_rad,ey_rad,ez_rad,ex_m,ey_m,ez_m,sx_rad,sy_rad,sz_rad,sx_m,sy_m,"
+         "sz_m,text\n";
   for (const Row& r : rows) {
     const Vector6d sd = r.reply.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-    out << fmt::format("\"{}\",{},{},{},{},{:.3f},{:.2f},{:.4f},{},{},{:.3f},{:.3f},{:.3f},{:.1f},{:.2f},",
-                       r.site, r.seed, r.reply.client_id, r.reply.seq, r.cold ? 1 : 0, r.overlap, r.error_deg,
-                       r.error_m, name_of(r.reply.status), name_of(r.reply.reason), r.reply.fitness,
-                       r.reply.overlap, r.reply.margin, r.reply.latency_ms, r.nees);
+    out << fmt::format(
+        "\"{}\",{},{},{},{},{:.3f},{:.2f},{:.4f},{},{},{:.3f},{:.3f},{:.3f},{:.1f},{:.1f},{:.1f},{:.2f},",
+        r.site, r.seed, r.reply.client_id, r.reply.seq, r.cold ? 1 : 0, r.overlap, r.error_deg, r.error_m,
+        name_of(r.reply.status), name_of(r.reply.reason), r.reply.fitness, r.reply.overlap, r.reply.margin,
+        r.reply.latency_ms, r.cpu_ms, r.prepare_ms, r.nees);
     for (const Vector6d& numbers : {r.error, sd})
       out << fmt::format("{:.6f},", fmt::join(numbers.begin(), numbers.end(), ","));
     out << fmt::format("\"{}\"\n", r.reply.text);

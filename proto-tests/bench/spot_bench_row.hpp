@@ -16,11 +16,16 @@ struct Row {
   Vector6d error = Vector6d::Zero();  ///< [rad; m] in the sensor's true axes
   double nees =
       -1;  ///< squared error over the reported covariance: 6 on average if that is honest; -1: no pose
+  double cpu_ms = 0;  ///< of the thread that answered; with one thread a request, what an idle machine takes
+  double prepare_ms = 0;  ///< that the room took beside the requests since the spot before, in CPU time
   SpotReply reply;
 
   [[nodiscard]] bool within(double deg, double m) const { return error_deg <= deg && error_m <= m; }
   [[nodiscard]] bool right() const { return within(10, 0.3); }
 };
+
+/// CPU time of this thread so far.
+[[nodiscard]] double thread_cpu_ms();
 
 /// `reply` against where the device was.
 [[nodiscard]] Row judged(SpotReply reply, const Pose& T_map_sensor_true);

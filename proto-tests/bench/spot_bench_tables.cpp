@@ -53,10 +53,19 @@ void print_success(const std::vector<Row>& rows, bool cold) {
     line(fmt::format("{:.1f}-{:.1f}", d / 10.0, (d + 1) / 10.0), d / 10.0, (d + 1) / 10.0 + (d == 9));
   line("over 0.3", 0.3, 2);
   line("all", -1, 2);
-  std::vector<double> latency;
-  for (const Row& r : rows)
-    if (r.cold == cold) latency.push_back(r.reply.latency_ms);
-  fmt::print("latency: median {:.1f} ms, p90 {:.1f} ms\n", percentile(latency, 0.5), percentile(latency, 0.9));
+  std::vector<double> latency, cpu, prepare;
+  for (const Row& r : rows) {
+    if (r.cold != cold) continue;
+    latency.push_back(r.reply.latency_ms);
+    cpu.push_back(r.cpu_ms);
+    prepare.push_back(r.prepare_ms);
+  }
+  const auto show = [](const char* what, const std::vector<double>& ms) {
+    fmt::print("{}: median {:.1f} ms, p90 {:.1f} ms\n", what, percentile(ms, 0.5), percentile(ms, 0.9));
+  };
+  show("latency", latency);
+  show("CPU time of the answering thread", cpu);
+  show("CPU time of the room's preparation beside it", prepare);
 }
 
 void print_by_site(const std::vector<Row>& rows) {

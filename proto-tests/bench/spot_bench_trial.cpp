@@ -121,18 +121,24 @@ class Trial {
 
   void answer(const Asked& asked, std::size_t device) {
     const double overlap = overlap_of(asked, stage_.devices[device].camera);
+    const double before_ms = thread_cpu_ms();
     cloud_.prepare();  // which the server does beside its requests
+    prepare_ms_ = thread_cpu_ms() - before_ms;
     SpotRequest alone = asked.request;
     alone.cold = !options_.evidence;
     alone.extra.bytes.clear();
     Device& d = *devices_[device];
     if (options_.peer_every > 0 && spots_++ % options_.peer_every == 0) keep_for_peers(asked, overlap);
-    add_row(options_.evidence ? weighed(alone, *d.searching, false, overlap, asked) : localizer_.locate(alone),
-            true, overlap, asked);
-    const SpotReply reply = options_.evidence ? weighed(asked.request, *d.live, true, overlap, asked)
-                                              : localizer_.locate(asked.request);
-    d.engine.add_reply(reply);
-    add_row(reply, false, overlap, asked);
+    const double cold_ms = thread_cpu_ms();
+    SpotReply cold =
+        options_.evidence ? weighed(alone, *d.searching, false, overlap, asked) : localizer_.locate(alone);
+    const double live_ms = thread_cpu_ms();
+    SpotReply live = options_.evidence ? weighed(asked.request, *d.live, true, overlap, asked)
+                                       : localizer_.locate(asked.request);
+    const double done_ms = thread_cpu_ms();
+    d.engine.add_reply(live);
+    add_row(std::move(cold), true, live_ms - cold_ms, overlap, asked);
+    add_row(std::move(live), false, done_ms - live_ms, overlap, asked);
   }
 
   /// The very clouds that the localizer compares.
@@ -161,12 +167,14 @@ class Trial {
     return reply;
   }
 
-  void add_row(SpotReply reply, bool cold, double overlap, const Asked& asked) {
+  void add_row(SpotReply reply, bool cold, double cpu_ms, double overlap, const Asked& asked) {
     if (reply.reason == Reason::no_gpc || reply.reason == Reason::bad_cloud) return;
     Row row = judged(std::move(reply), asked.T_map_sensor_true);
     row.site = stage_.name;
     row.seed = stage_.seed;
     row.cold = cold;
+    row.cpu_ms = cpu_ms;
+    row.prepare_ms = prepare_ms_;
     row.overlap = overlap;
     result_.rows.push_back(std::move(row));
   }
@@ -193,6 +201,7 @@ class Trial {
   std::vector<std::unique_ptr<Device>> devices_;
   std::vector<std::deque<DepthImage>> recent_;  ///< per LiDAR, newest last
   TrialResult result_;
+  double prepare_ms_ = 0;  ///< of the newest spot
   int spots_ = 0;
 };
 

@@ -162,7 +162,7 @@ void GlobalCloud::prepare() {
     if (frames.empty()) return;
     room = room_of(frames);
   }
-  if (!room->surfaces()->cloud.empty()) (void)room->surfaces()->field_fine();
+  room->prepare();
 }
 
 }  // namespace liloc

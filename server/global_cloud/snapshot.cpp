@@ -89,6 +89,13 @@ const std::vector<Eigen::Vector3d>& StitchedRoom::ups_map() const {
   return ups_map_;
 }
 
+void StitchedRoom::prepare() const {
+  if (surfaces()->cloud.empty()) return;
+  (void)surfaces()->field_fine();
+  (void)ups_map();
+  (void)described();
+}
+
 const Target& Snapshot::target() const {
   std::call_once(once_, [this] {
     target_.surfaces = room_->surfaces();

@@ -76,6 +76,8 @@ class StitchedRoom {
   [[nodiscard]] const Described& described() const;
   /// What may be up in the map frame, likeliest first: z alone in a site that is set up as it should be.
   [[nodiscard]] const std::vector<Eigen::Vector3d>& ups_map() const;
+  /// Builds all of it now, so that no request has to. Costs nothing the second time.
+  void prepare() const;
 
  private:
   const Parts parts_;

@@ -48,11 +48,15 @@ TEST_P(SearchLaw, FeaturesNeedNoGravityAndTheirCellsNoOrder) {
 TEST_P(SearchLaw, CellsOverlapAndHoldEveryPointOfTheRoom) {
   const WatchedRoom w = watched_room(GetParam());
   const Described room = describe(w.target->coarse, {0.5, 1.0, 1});
-  const auto cells = partition(room, 1.5, 20);
+  const auto [tiles, cells] = partition(room, 1.5, 20);
   EXPECT_GT(cells.size(), 1U);
-  std::vector<int> held(room.features.size(), 0);
+  std::vector<int> held(room.features.size(), 0), once(room.features.size(), 0);
   for (const auto& cell : cells)
-    for (const std::uint32_t k : cell) ++held[k];
+    for (const std::uint32_t tile : cell)
+      for (const std::uint32_t k : tiles[tile]) ++held[k];
+  for (const auto& tile : tiles)
+    for (const std::uint32_t k : tile) ++once[k];
+  EXPECT_EQ(std::count(once.begin(), once.end(), 1), static_cast<std::ptrdiff_t>(once.size()));
   const auto missed = std::count(held.begin(), held.end(), 0);
   EXPECT_LT(missed, static_cast<std::ptrdiff_t>(held.size() / 10));
 }

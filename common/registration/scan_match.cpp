@@ -9,8 +9,8 @@ namespace liloc {
 namespace {
 
 constexpr double kUsualRangeM = 2.0;  // at which a turn shows as a shift
-using Matrix6f = Eigen::Matrix<float, 6, 6>;
-using Vector6f = Eigen::Matrix<float, 6, 1>;
+using Matrix6f = PatchWeights::Matrix6f;
+using Vector6f = PatchWeights::Vector6f;
 
 constexpr double kCharacteristicLengthM = 2.0;  // weighs radians against metres when directions are compared
 
@@ -18,6 +18,12 @@ struct Source {
   Eigen::Vector3f mean, normal;
   float weight;
   float sd;
+  std::uint32_t patch;
+};
+
+struct Sources {
+  std::vector<Source> surfels;
+  std::size_t patches = 0;
 };
 
 /// A source surfel and its plane, for one iteration.
@@ -28,24 +34,36 @@ struct Pair {
   float weight;
   float sd;
   float normal_variance;  ///< rad^2, of the plane's normal
+  std::uint32_t patch;
+
+  /// Of the residual, by a turn about the sensor and a shift.
+  [[nodiscard]] Vector6f jacobian() const {
+    Vector6f J;
+    J.head<3>() = lever.cross(normal);
+    J.tail<3>() = normal;
+    return J;
+  }
 };
 
-std::vector<Source> choose_sources(const std::vector<Surfel>& frame, const ScanMatchOptions& options) {
-  std::vector<Source> flat;
+/// Flat surfels, at most so many, evenly.
+Sources choose_sources(const std::vector<Surfel>& frame, const ScanMatchOptions& options) {
+  std::vector<const Surfel*> flat;
   flat.reserve(frame.size());
-  for (const Surfel& s : frame) {
-    if (s.flatness < static_cast<float>(options.min_flatness)) continue;
+  for (const Surfel& s : frame)
+    if (s.flatness >= static_cast<float>(options.min_flatness)) flat.push_back(&s);
+  const std::size_t count = std::min(flat.size(), options.max_surfels);
+  const double step = static_cast<double>(flat.size()) / static_cast<double>(std::max<std::size_t>(count, 1));
+  PatchNumbers numbers(options.patch.size_m);
+  Sources sources;
+  sources.surfels.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Surfel& s = *flat[static_cast<std::size_t>(static_cast<double>(i) * step)];
     const float range = s.mean.norm();
     const float sd = static_cast<float>(options.sensor_sd_m + options.noise_per_m2 * range * range);
-    flat.push_back({s.mean, s.normal, s.flatness, sd});
+    sources.surfels.push_back({s.mean, s.normal, s.flatness, sd, numbers.of(s.mean, s.normal)});
   }
-  if (flat.size() <= options.max_surfels) return flat;
-  std::vector<Source> thin;
-  thin.reserve(options.max_surfels);
-  const double step = static_cast<double>(flat.size()) / static_cast<double>(options.max_surfels);
-  for (std::size_t i = 0; i < options.max_surfels; ++i)
-    thin.push_back(flat[static_cast<std::size_t>(static_cast<double>(i) * step)]);
-  return thin;
+  sources.patches = numbers.count();
+  return sources;
 }
 
 void find_pairs(const LocalMap& map, const std::vector<Source>& sources, const Pose& T, StampNs now_ns,
@@ -60,7 +78,7 @@ void find_pairs(const LocalMap& map, const std::vector<Source>& sources, const P
     const Surfel& plane = cell->surfel;
     const float thinness = 1 - plane.flatness;
     pairs.push_back({lever, plane.normal, plane.normal.dot(p - plane.mean), s.weight * trust, s.sd,
-                     thinness * thinness / plane.count});
+                     thinness * thinness / plane.count, s.patch});
   }
 }
 
@@ -82,30 +100,24 @@ float kernel_squared(const Pair& p, const Matrix6f& doubt, const Vector6f& J, bo
   return std::clamp(deviations * deviations * expected, low * low, high * high);
 }
 
-Normal accumulate(const std::vector<Pair>& pairs, const Matrix6d& doubt, bool vague,
+Normal accumulate(const std::vector<Pair>& pairs, std::size_t patches, const Matrix6d& doubt, bool vague,
                   const ScanMatchOptions& options) {
   Normal n;
-  double total = 0;
   const Matrix6f doubtf = doubt.cast<float>();
-  Vector6f J;
+  PatchWeights sums(patches);
+  for (const Pair& p : pairs) sums.add(p.patch, p.weight, p.residual, p.sd * p.sd, p.jacobian());
+  const std::vector<float> patch_weights = sums.weights(doubtf, options.patch);
   for (const Pair& p : pairs) {
-    J.head<3>() = p.lever.cross(p.normal);
-    J.tail<3>() = p.normal;
+    const Vector6f J = p.jacobian();
     const float scaled = p.residual * p.residual / kernel_squared(p, doubtf, J, vague, options);
-    const float robust = 1.0F / ((1 + scaled) * (1 + scaled));
-    const double share = static_cast<double>(p.weight) * robust;
-    const double weight = share / (static_cast<double>(p.sd) * p.sd);
-    total += share;
+    const float robust = patch_weights[p.patch] / ((1 + scaled) * (1 + scaled));
+    const double weight = static_cast<double>(p.weight) * robust / (static_cast<double>(p.sd) * p.sd);
     n.noise += weight * static_cast<double>(p.normal_variance);
     const Vector6d Jd = J.cast<double>();
     n.H.selfadjointView<Eigen::Lower>().rankUpdate(Jd, weight);
     n.b -= Jd * (weight * static_cast<double>(p.residual));
   }
   n.H = n.H.selfadjointView<Eigen::Lower>();
-  const double correlated = std::min(1.0, options.independent_surfels / std::max(total, 1.0));
-  n.H *= correlated;
-  n.b *= correlated;
-  n.noise *= correlated;
   return n;
 }
 
@@ -180,14 +192,15 @@ double MotionGuess::sd_m() const {
 Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
                              StampNs now_ns, const ScanMatchOptions& options) {
   if (map.size() == 0) return fail("scan match: the local map is empty; insert a first frame");
-  const std::vector<Source> sources = choose_sources(frame, options);
-  if (sources.empty()) return fail("scan match: none of {} surfels is flat enough for a normal", frame.size());
+  const Sources sources = choose_sources(frame, options);
+  if (sources.surfels.empty())
+    return fail("scan match: none of {} surfels is flat enough for a normal", frame.size());
   ScanMatch match;
   match.T_map_sensor = guess.T_map_sensor;
   const Matrix6d certainty = guess.covariance.inverse();
   match.information = certainty;
   std::vector<Pair> pairs;
-  pairs.reserve(sources.size());
+  pairs.reserve(sources.surfels.size());
   double share = 1;
   for (match.iterations = 0; match.iterations < options.max_iterations && !match.settled; ++match.iterations) {
     const MotionGuess doubt(match.T_map_sensor, share * guess.covariance);
@@ -195,9 +208,9 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
     // What the guess may still be off shrinks with each step; while that is much, planes are looked for farther
     // away.
     share *= vague ? 0.5 : 0.25;
-    find_pairs(map, sources, match.T_map_sensor, now_ns, vague ? 2 : 1, pairs);
+    find_pairs(map, sources.surfels, match.T_map_sensor, now_ns, vague ? 2 : 1, pairs);
     if (pairs.size() < 6) break;
-    Normal n = accumulate(pairs, doubt.covariance, vague, options);
+    Normal n = accumulate(pairs, sources.patches, doubt.covariance, vague, options);
     drop_unobserved(n, options, match);
     add_prior(n, guess, certainty, match.T_map_sensor);
     match.information = n.H;
@@ -205,7 +218,7 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
     apply(match.T_map_sensor, step);
     match.settled = step.head<3>().norm() < options.stop_rad && step.tail<3>().norm() < options.stop_m;
   }
-  grade(match, pairs, sources.size());
+  grade(match, pairs, sources.surfels.size());
   match.T_map_sensor = normalized(match.T_map_sensor);
   return match;
 }

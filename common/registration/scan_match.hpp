@@ -3,6 +3,7 @@
 
 #include "common/base/result.hpp"
 #include "common/registration/local_map.hpp"
+#include "common/registration/patches.hpp"
 
 namespace liloc {
 
@@ -31,9 +32,9 @@ struct ScanMatchOptions {
   double kernel_deviations = 3;  ///< of what noise and the guess explain, where a surfel begins to count less
   double kernel_min_m = 0.02;    ///< never narrower: the map's own surfels err by as much at edges
   double kernel_max_m = 0.10;    ///< nor wider
+  PatchOptions patch;            ///< what stands or moves together counts together
   double vague_m = 0.08;         ///< a guess that may shift points by more looks two cells far for planes,
   double kernel_vague_m = 0.25;  ///< with a kernel as wide as this
-  double independent_surfels = 250;  ///< neighbours err together: no more than so many count as independent
   double observed_noise =
       3;  ///< a direction with less information than so many times what noisy normals feign,
   double observed_share = 1e-4;  ///< or with less of the whole than so, is left to the guess
@@ -55,10 +56,10 @@ struct ScanMatch {
 };
 
 /// Point-to-plane registration of a frame's surfels (sensor frame) to the map, with a Geman-McClure kernel
-/// for each pair as wide as noise and the guess explain, the guess as a prior and unobserved directions left to
-/// it (after "solution remapping", Zhang, Kaess, Singh 2016). Pure. `now_ns` is the frame's stamp: surfels of
-/// the map younger than its trust limit weigh less. Errors: an empty map or frame. A poor fit is a result, not
-/// an error.
+/// for each pair and for each patch, as wide as noise and the guess explain, the guess as a prior and
+/// unobserved directions left to it (after "solution remapping", Zhang, Kaess, Singh 2016). Pure. `now_ns` is
+/// the frame's stamp: surfels of the map younger than its trust limit weigh less. Errors: an empty map or
+/// frame. A poor fit is a result, not an error.
 [[nodiscard]] Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame,
                                            const MotionGuess& guess, StampNs now_ns,
                                            const ScanMatchOptions& options = {});

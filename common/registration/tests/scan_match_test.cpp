@@ -78,6 +78,20 @@ TEST_P(ScanMatchLaw, APersonInViewDoesNotMoveTheAnswer) {
   EXPECT_LT(distance_m(found->T_map_sensor, T), 0.01);
 }
 
+/// Close by he has more surfels than all else that shows motion along his way.
+TEST_P(ScanMatchLaw, APersonWhoStoodCloseByAndWalksOffDoesNotTakeTheDeviceAlong) {
+  auto room = furnished_room(GetParam());
+  const Pose T = looking({1.0, 2.5, 1.2}, 0, 0.1);
+  LocalMap map;
+  room.furniture.push_back({{2.2, 2.2, 0}, {2.6, 2.7, 1.8}});
+  for (int i = 0; i < 6; ++i) map.insert(T, surfels_of(room, T, from_ms(300.0 * i), 0.004), from_ms(300.0 * i));
+  room.furniture.back() = {{2.225, 2.2, 0}, {2.625, 2.7, 1.8}};
+  const auto found =
+      match_scan(map, surfels_of(room, T, from_ms(1900), 0.004), {T, 0.025, 0.014}, from_ms(1900));
+  ASSERT_TRUE(found);
+  EXPECT_LT(distance_m(found->T_map_sensor, T), 0.004);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, ScanMatchLaw, testing::Range(1U, 9U));
 
 TEST(ScanMatch, ADirectionThatTheSceneDoesNotShowFollowsTheGuess) {

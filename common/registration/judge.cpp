@@ -38,21 +38,10 @@ Counts device_against_ceiling(const Target& target, const Cloud& points, const E
   return counts;
 }
 
-Counts ceiling_against_device(const Target& target, const SightView& view,
-                              const Eigen::Isometry3f& T_sensor_map, float tolerance, std::size_t stride) {
-  Counts counts;
-  for (std::size_t i = 0; i < target->coarse.size(); i += stride) {
-    const Sight sight = view.look_sensor(T_sensor_map * target->coarse.points[i], tolerance);
-    counts.agree += sight == Sight::agrees;
-    counts.conflict += sight == Sight::conflict;
-  }
-  return counts;
-}
-
 }  // namespace
 
 Judgement judge(const Target& target, const Query& query, const Cloud& device_points, const Pose& T_map_sensor,
-                double tolerance_m, std::size_t map_stride, double conflict_weight) {
+                double tolerance_m, MapShare map_share, double conflict_weight) {
   Judgement result;
   if (device_points.empty()) return result;
   const auto tolerance = static_cast<float>(tolerance_m);
@@ -62,14 +51,16 @@ Judgement judge(const Target& target, const Query& query, const Cloud& device_po
   result.conflict = device.conflict / count;
   result.score = result.agree - conflict_weight * result.conflict;
   if (query.view.empty()) return result;
-  const Counts map =
-      ceiling_against_device(target, query.view, T_map_sensor.inverse().cast<float>(), tolerance, map_stride);
+  const std::size_t stride = map_share == MapShare::half ? 2 : 1;
+  const SightView::Tally map =
+      query.view.tally(target->coarse_halves, (target->coarse.size() + stride - 1) / stride,
+                       T_map_sensor.inverse().cast<float>(), tolerance);
   const double seen = map.agree + map.conflict;
   if (seen > 0) {
     result.map_agree = map.agree / seen;
     result.map_conflict = map.conflict / seen;
   }
-  const double medium = std::max<double>(1.0, static_cast<double>(query.medium.size() / map_stride));
+  const double medium = std::max<double>(1.0, static_cast<double>(query.medium.size() / stride));
   result.map_seen = seen / medium;
   result.score += (map.agree - conflict_weight * map.conflict) / medium;
   return result;

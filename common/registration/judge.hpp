@@ -19,11 +19,13 @@ struct Judgement {
 /// A conflict against an agreement, once a pose is refined; see DECISIONS.md.
 constexpr double kConflictWeight = 16.0;
 
+enum class MapShare { all, half };
+
 /// Scores a pose: every proposer's candidates pass through here and nothing else ranks them. `tolerance_m` is
-/// how far the pose may still be off. Unseen space is neutral. Of the target's thinned points every
-/// `map_stride`-th is asked. Pure; cost is linear in both clouds.
+/// how far the pose may still be off. Unseen space is neutral. `map_share`: how many of
+/// the target's thinned points are asked. Pure; cost is linear in both clouds.
 [[nodiscard]] Judgement judge(const Target& target, const Query& query, const Cloud& device_points,
-                              const Pose& T_map_sensor, double tolerance_m, std::size_t map_stride = 1,
+                              const Pose& T_map_sensor, double tolerance_m, MapShare map_share = MapShare::all,
                               double conflict_weight = kConflictWeight);
 
 }  // namespace liloc

@@ -3,46 +3,52 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "common/registration/pairs.hpp"
+#include "common/registration/plane_pairs.hpp"
 
 namespace liloc {
 namespace {
 
-/// The normal equations of one iteration, taken about the source's origin so that they stay well conditioned.
-struct Normals {
-  Matrix6d H = Matrix6d::Zero();
-  Vector6d g = Vector6d::Zero();
-  double squared = 0, weight = 0;
-  int pairs = 0;
-
-  void add(const Vector6d& jacobian, double residual, double w) {
-    const Vector6d weighted = w * jacobian;
-    H.noalias() += weighted * jacobian.transpose();
-    g.noalias() += weighted * residual;
-    squared += w * residual * residual;
-    weight += w;
-    ++pairs;
+/// The pairs of a side at each pose that is tried.
+class Pairs {
+ public:
+  Pairs(const Side& side, const RefineOptions& options) : side_(side), options_(options) {
+    if (!options.point_to_point && side.source.has_normals() && side.target.has_normals())
+      to_plane_.emplace(side);
   }
+
+  [[nodiscard]] NormalEquations at(const Pose& T, double distance_m) {
+    return to_plane_ ? to_plane_->at(T, distance_m, options_.min_normal_agreement)
+                     : point_to_point(T, distance_m);
+  }
+
+ private:
+  [[nodiscard]] NormalEquations point_to_point(const Pose& T, double distance_m) const {
+    NormalEquations sum;
+    for_each_pair(side_, T, distance_m, options_.min_normal_agreement,
+                  [&](std::size_t, const Eigen::Vector3f& arm, const Eigen::Vector3f&,
+                      const Eigen::Vector3f& offset, double weight) {
+                    for (int axis = 0; axis < 3; ++axis) {
+                      const Vector6d jacobian = jacobian_of(arm, Eigen::Vector3f::Unit(axis));
+                      const auto residual = static_cast<double>(offset[axis]);
+                      sum.H.noalias() += weight * jacobian * jacobian.transpose();
+                      sum.g.noalias() += weight * residual * jacobian;
+                      sum.squared += weight * residual * residual;
+                      sum.weight += weight;
+                      ++sum.pairs;
+                    }
+                  });
+    return sum;
+  }
+
+  const Side side_;
+  const RefineOptions& options_;
+  std::optional<PlanePairs> to_plane_;
 };
 
-Normals accumulate(const Side& side, const Pose& T, double distance_m, const RefineOptions& options) {
-  Normals sum;
-  const bool to_plane = !options.point_to_point && side.source.has_normals() && side.target.has_normals();
-  for_each_pair(side, T, distance_m, options.min_normal_agreement,
-                [&](std::size_t, const Eigen::Vector3f& arm, const Eigen::Vector3f& normal,
-                    const Eigen::Vector3f& offset, double weight) {
-                  if (to_plane)
-                    return sum.add(jacobian_of(arm, normal), static_cast<double>(normal.dot(offset)), weight);
-                  for (int axis = 0; axis < 3; ++axis)
-                    sum.add(jacobian_of(arm, Eigen::Vector3f::Unit(axis)), static_cast<double>(offset[axis]),
-                            weight);
-                });
-  return sum;
-}
-
 /// Solves for the step, holding back directions that the pairs hardly observe.
-Vector6d solve(const Normals& sum) {
+Vector6d solve(const NormalEquations& sum) {
   Matrix6d damped = sum.H;
   damped.diagonal().array() += 1e-4 * sum.weight + 1e-9;
   return -damped.ldlt().solve(sum.g);
@@ -56,7 +62,7 @@ Pose moved(const Pose& T, const Vector6d& step) {
 }
 
 /// Pulls towards the prior, in the same axes as the pairs: about the source's origin.
-void add_prior(const PosePrior& prior, const Pose& T, Normals* sum) {
+void add_prior(const PosePrior& prior, const Pose& T, NormalEquations* sum) {
   const double variance = prior.residual_sd_m * prior.residual_sd_m;
   const double w_rotation = variance / (prior.sd_rad * prior.sd_rad),
                w_shift = variance / (prior.sd_m * prior.sd_m);
@@ -67,13 +73,17 @@ void add_prior(const PosePrior& prior, const Pose& T, Normals* sum) {
   sum->g.tail<3>() += w_shift * (T.translation() - prior.T_target_source.translation());
 }
 
+/// The distance of pairs between far and near.
+double middle_of(const RefineOptions& options) {
+  return std::min(options.start_distance_m, 2 * options.end_distance_m);
+}
+
 /// Iterates with a distance that shrinks geometrically; true when the last step was small.
-bool iterate(const Side& side, int iterations, double from_m, double to_m, const RefineOptions& options,
-             const PosePrior* prior, Pose* T) {
+bool iterate(Pairs& pairs, int iterations, double from_m, double to_m, const PosePrior* prior, Pose* T) {
   bool small = false;
   for (int i = 0; i < iterations; ++i) {
     const double share = iterations > 1 ? std::min(1.0, 1.5 * i / (iterations - 1.0)) : 1.0;
-    Normals sum = accumulate(side, *T, from_m * std::pow(to_m / from_m, share), options);
+    NormalEquations sum = pairs.at(*T, from_m * std::pow(to_m / from_m, share));
     if (sum.pairs < 12) return false;
     if (prior != nullptr) add_prior(*prior, *T, &sum);
     const Vector6d step = solve(sum);
@@ -104,21 +114,28 @@ Fit fit_of(const Target& target, const Cloud& cloud_source, const Pose& T_target
           std::sqrt(squared_sum / static_cast<double>(near))};
 }
 
+Pose approach(const Target& target, const Query& query, const Pose& T_target_source_guess, int iterations,
+              const RefineOptions& options) {
+  Pose T = T_target_source_guess;
+  Pairs far({target->coarse, target->nearest_coarse, query.sparse}, options);
+  iterate(far, iterations, options.start_distance_m, middle_of(options), nullptr, &T);
+  return normalized(T);
+}
+
 Alignment refine(const Target& target, const Query& query, const Pose& T_target_source_guess,
                  const RefineOptions& options, const PosePrior* prior) {
   Alignment result;
   Pose T = T_target_source_guess;
-  const double middle_m = std::min(options.start_distance_m, 2 * options.end_distance_m);
-  iterate({target->coarse, target->nearest_coarse, query.sparse}, options.sparse_iterations,
-          options.start_distance_m, middle_m, options, prior, &T);
-  iterate({target->coarse, target->nearest_coarse, query.medium}, options.coarse_iterations, middle_m, middle_m,
-          options, prior, &T);
-  const Side fine{target->cloud, target->nearest, query.medium};
-  result.converged =
-      iterate(fine, options.fine_iterations, middle_m, options.end_distance_m, options, prior, &T);
+  const double middle_m = middle_of(options);
+  Pairs far({target->coarse, target->nearest_coarse, query.sparse}, options);
+  iterate(far, options.sparse_iterations, options.start_distance_m, middle_m, prior, &T);
+  Pairs near({target->coarse, target->nearest_coarse, query.medium}, options);
+  iterate(near, options.coarse_iterations, middle_m, middle_m, prior, &T);
+  Pairs fine({target->cloud, target->nearest, query.medium}, options);
+  result.converged = iterate(fine, options.fine_iterations, middle_m, options.end_distance_m, prior, &T);
   result.T_target_source = normalized(T);
 
-  const Normals sum = accumulate(fine, result.T_target_source, options.end_distance_m, options);
+  const NormalEquations sum = fine.at(result.T_target_source, options.end_distance_m);
   result.pairs = sum.pairs;
   result.pair_share = query.medium.empty() ? 0.0 : sum.pairs / static_cast<double>(query.medium.size());
   if (sum.pairs >= 12 && sum.weight > 0) {

@@ -36,6 +36,10 @@ struct PosePrior {
 [[nodiscard]] Alignment refine(const Target& target, const Query& query, const Pose& T_target_source_guess,
                                const RefineOptions& options = {}, const PosePrior* prior = nullptr);
 
+/// Its first iterations alone, by few points and without evidence: to rank many guesses.
+[[nodiscard]] Pose approach(const Target& target, const Query& query, const Pose& T_target_source_guess,
+                            int iterations, const RefineOptions& options = {});
+
 /// Share of points with a target point within `distance_m` and the RMSE over them, without refinement.
 struct Fit {
   double fitness = 0, inlier_rmse_m = 0;

@@ -1,9 +1,40 @@
 #include "common/registration/sight.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "common/registration/simd.hpp"
+
 namespace liloc {
+namespace {
+
+constexpr std::size_t kAtOnce = 512;  // points whose pixels are found before any is looked up
+
+/// A pinhole camera and where it stands, for a kernel. `R` by columns.
+struct Pinhole {
+  float R[9], t[3], fx, fy, cx, cy, width, height, nearest;
+};
+
+/// The pixel of each point, or -1 outside of the view, and how far it is.
+LILOC_WIDE void project(const Pinhole& c, const float* x, const float* y, const float* z, std::size_t count,
+                        std::int32_t* pixels, float* depths) {
+  const auto row = static_cast<std::int32_t>(c.width);
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) {
+    const float px = c.R[0] * x[i] + c.R[3] * y[i] + c.R[6] * z[i] + c.t[0],
+                py = c.R[1] * x[i] + c.R[4] * y[i] + c.R[7] * z[i] + c.t[1],
+                pz = c.R[2] * x[i] + c.R[5] * y[i] + c.R[8] * z[i] + c.t[2];
+    const float inverse = 1.0F / std::max(pz, c.nearest);
+    const float u = px * inverse * c.fx + c.cx, v = py * inverse * c.fy + c.cy;
+    const bool inside = (pz >= c.nearest) & (u >= 0) & (v >= 0) & (u < c.width) & (v < c.height);
+    const std::int32_t pixel = static_cast<std::int32_t>(v) * row + static_cast<std::int32_t>(u);
+    pixels[i] = inside ? pixel : -1;
+    depths[i] = pz;
+  }
+}
+
+}  // namespace
 
 void SightView::prepare(const Camera& small) {
   width_ = small.width;
@@ -61,6 +92,28 @@ SightView SightView::from_cloud(const Cloud& cloud_sensor, const Camera& camera,
       }
   }
   return view;
+}
+
+SightView::Tally SightView::tally(const Vectors& points, std::size_t count,
+                                  const Eigen::Isometry3f& T_sensor_points, float tolerance_m) const {
+  Pinhole camera{{}, {}, fx_, fy_, cx_, cy_, width_f_, height_f_, kNearest};
+  Eigen::Map<Eigen::Matrix3f>(camera.R) = T_sensor_points.linear();
+  Eigen::Map<Eigen::Vector3f>(camera.t) = T_sensor_points.translation();
+  std::array<std::int32_t, kAtOnce> pixels{};
+  std::array<float, kAtOnce> depths{};
+  Tally tally;
+  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+    const std::size_t here = std::min(kAtOnce, count - begin);
+    project(camera, points.x.data() + begin, points.y.data() + begin, points.z.data() + begin, here,
+            pixels.data(), depths.data());
+    for (std::size_t i = 0; i < here; ++i) {
+      if (pixels[i] < 0) continue;
+      const Sight sight = compare(bands_[static_cast<std::size_t>(pixels[i])], depths[i], tolerance_m);
+      tally.agree += sight == Sight::agrees;
+      tally.conflict += sight == Sight::conflict;
+    }
+  }
+  return tally;
 }
 
 void SightView::widen() {

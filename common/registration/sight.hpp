@@ -5,6 +5,7 @@
 
 #include "common/geometry/camera.hpp"
 #include "common/geometry/cloud.hpp"
+#include "common/registration/vectors.hpp"
 
 namespace liloc {
 
@@ -37,15 +38,18 @@ class SightView {
     const float inverse_z = 1.0F / p.z();
     const float u = p.x() * inverse_z * fx_ + cx_, v = p.y() * inverse_z * fy_ + cy_;
     if (!(u >= 0 && v >= 0 && u < width_f_ && v < height_f_)) return Sight::unseen;
-    const Band& band =
-        bands_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
-    if (band.far == 0) return Sight::unseen;
-    const float slack = tolerance_m + 0.01F * p.z();
-    if (p.z() < band.near - slack) return p.z() < band.near - 2 * slack ? Sight::conflict : Sight::agrees;
-    return p.z() <= band.near + slack || (p.z() >= band.far - slack && p.z() <= band.far + slack)
-               ? Sight::agrees
-               : Sight::behind;
+    const auto pixel =
+        static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u);
+    return compare(bands_[pixel], p.z(), tolerance_m);
   }
+
+  struct Tally {
+    int agree = 0, conflict = 0;
+  };
+  /// What `look_sensor` says of the first `count` points, counted; T_sensor_points places them before the
+  /// sensor.
+  [[nodiscard]] Tally tally(const Vectors& points, std::size_t count, const Eigen::Isometry3f& T_sensor_points,
+                            float tolerance_m) const;
 
   [[nodiscard]] bool empty() const { return bands_.empty(); }
 
@@ -54,6 +58,13 @@ class SightView {
   struct Band {
     float near = 0, far = 0;  ///< metres; far 0: nothing measured
   };
+  [[nodiscard]] static Sight compare(const Band& band, float z, float tolerance_m) {
+    if (band.far == 0) return Sight::unseen;
+    const float slack = tolerance_m + 0.01F * z;
+    if (z < band.near - slack) return z < band.near - 2 * slack ? Sight::conflict : Sight::agrees;
+    return z <= band.near + slack || (z >= band.far - slack && z <= band.far + slack) ? Sight::agrees
+                                                                                      : Sight::behind;
+  }
   void prepare(const Camera& small);
   void widen();  ///< takes in the bands of the four neighbours
 

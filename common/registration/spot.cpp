@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kContradicts_rad = radians(5.0);  // planes tell up to a degree or two
 constexpr double kSure = 0.5;                      // confidence above which planes may contradict the device
+constexpr int kSketchIterations = 6;
 constexpr double kRival = 0.5;  // of the likeliest direction's confidence: less likely ones are not tried
 
 }  // namespace
@@ -72,12 +73,9 @@ std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector
   const Target& target = problem.target;
   const Query& query = problem.query;
   candidates = distinct(std::move(candidates), options.sketch_most);
-  RefineOptions sketch = options.refine;
-  sketch.sparse_iterations = 6;
-  sketch.coarse_iterations = sketch.fine_iterations = 0;
   for (Candidate& c : candidates) {
-    c.T_map_sensor = refine(target, query, c.T_map_sensor, sketch).T_target_source;
-    c.score = judge(target, query, query.sparse, c.T_map_sensor, options.sketch_tolerance_m, 2,
+    c.T_map_sensor = approach(target, query, c.T_map_sensor, kSketchIterations, options.refine);
+    c.score = judge(target, query, query.sparse, c.T_map_sensor, options.sketch_tolerance_m, MapShare::half,
                     options.sketch_conflict_weight)
                   .score;
   }

@@ -33,11 +33,20 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
   return thin;
 }
 
+Vectors every_other_first(const Cloud& cloud) {
+  Vectors vectors(cloud.size());
+  const std::size_t half = (cloud.size() + 1) / 2;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    vectors.set(i % 2 == 0 ? i / 2 : half + i / 2, cloud.points[i]);
+  return vectors;
+}
+
 }  // namespace
 
 Surfaces::Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m)
     : cloud(std::move(cloud_map)),
       coarse(voxel_downsample(cloud, 2 * voxel_size_m)),
+      coarse_halves(every_other_first(coarse)),
       nearest(cloud.points, voxel_size_m, 1.3 * voxel_size_m),
       nearest_coarse(coarse.points, 3 * voxel_size_m, 0.32),
       views_(std::move(views)) {}

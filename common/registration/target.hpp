@@ -20,7 +20,8 @@ class Surfaces {
   Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m);
 
   const Cloud cloud;
-  const Cloud coarse;  ///< at twice the voxel size
+  const Cloud coarse;           ///< at twice the voxel size
+  const Vectors coarse_halves;  ///< its points, every other one first
   const NearestGrid nearest, nearest_coarse;
 
   /// What a device point is worth at each place, at 0.2 m and at 0.1 m: for searches. The first caller builds

@@ -34,6 +34,24 @@ TEST(Sight, BesideAnEdgeNothingConflicts) {
   EXPECT_NE(half_covered().look({0.5F / 50 * 1.5F, 0, 1.5F}, 0.05F), Sight::conflict);
 }
 
+TEST(Sight, ManyPointsAreCountedAsEachIsSeen) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const WatchedRoom w = watched_room(seed);
+    const Eigen::Isometry3f T = w.T_map_device.inverse().cast<float>();
+    const std::size_t count = w.target->coarse.size() - 5;
+    int agree = 0, conflict = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Sight sight = w.query.view.look_sensor(T * w.target->coarse.points[i], 0.05F);
+      agree += sight == Sight::agrees;
+      conflict += sight == Sight::conflict;
+    }
+    const SightView::Tally tally = w.query.view.tally(Vectors(w.target->coarse.points), count, T, 0.05F);
+    ASSERT_GT(agree, 100);
+    EXPECT_LE(std::abs(tally.agree - agree), 2) << "of those on the edge of a pixel";
+    EXPECT_LE(std::abs(tally.conflict - conflict), 2);
+  }
+}
+
 TEST(Sight, AViewRebuiltFromTheCloudAgreesWithItsOwnPoints) {
   const WatchedRoom w = watched_room(3);
   std::size_t agree = 0, conflict = 0;

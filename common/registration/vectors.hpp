@@ -1,0 +1,20 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace liloc {
+
+/// One vector per point as arrays, filled up with zeros to whole registers.
+struct Vectors {
+  static constexpr std::size_t kLanes = 8;
+  std::vector<float> x, y, z;
+
+  explicit Vectors(std::size_t count)
+      : x((count + kLanes - 1) / kLanes * kLanes, 0.0F), y(x.size(), 0.0F), z(x.size(), 0.0F) {}
+  explicit Vectors(const std::vector<Eigen::Vector3f>& vectors) : Vectors(vectors.size()) {
+    for (std::size_t i = 0; i < vectors.size(); ++i) set(i, vectors[i]);
+  }
+  void set(std::size_t i, const Eigen::Vector3f& v) { x[i] = v.x(), y[i] = v.y(), z[i] = v.z(); }
+};
+
+}  // namespace liloc

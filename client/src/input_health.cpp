@@ -10,8 +10,9 @@ namespace {
 
 constexpr int kEmptyFrames = 15;
 constexpr std::size_t kMatches = 60, kFewestMatches = 30;
-constexpr int kStrainedMatches = 15;
-constexpr double kLargeStrain = 2;  // in 33 simulated walks, calm and crowded, it never came to that
+constexpr double kLargeStrain =
+    1.3;  // of 60 matches 18 exceeded it in crowds, 32 where the odometry ran off ...
+constexpr std::ptrdiff_t kStrainedMatches = 36;  // ... and 36 to 60 with 10 % of focal length
 constexpr double kLargeResidual =
     0.012;  // a right calibration has 4 to 7 mm in furnished rooms, noise included
 
@@ -20,26 +21,31 @@ constexpr double kLargeResidual =
 void InputHealth::note(FrameFault fault, double residual_m, double strain) {
   empty_ = fault == FrameFault::too_few_points ? empty_ + 1 : 0;
   if (residual_m <= 0) return;
-  strained_ = strain > kLargeStrain ? strained_ + 1 : 0;
-  strain_ = strain;
-  residuals_m_.push_back(residual_m);
-  if (residuals_m_.size() > kMatches) residuals_m_.pop_front();
+  matches_.push_back({residual_m, strain});
+  if (matches_.size() > kMatches) matches_.pop_front();
+}
+
+double InputHealth::median_of(double Match::*figure) const {
+  std::vector<double> values;
+  for (const Match& match : matches_) values.push_back(match.*figure);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 std::string InputHealth::problem() const {
   if (empty_ >= kEmptyFrames) return "depth frames hold hardly a return";
-  if (strained_ >= kStrainedMatches)
+  if (matches_.size() < kFewestMatches) return "";
+  const auto strained = [](const Match& m) { return m.strain > kLargeStrain; };
+  if (std::count_if(matches_.begin(), matches_.end(), strained) >= kStrainedMatches)
     return fmt::format(
-        "depth and IMU contradict each other ({:.0f} times what their noise explains): check T_imu_sensor, the "
+        "depth and IMU contradict each other ({:.1f} times what their noise explains): check T_imu_sensor, the "
         "stamps of both and the intrinsics",
-        strain_);
-  if (residuals_m_.size() < kFewestMatches) return "";
-  std::vector<double> residuals(residuals_m_.begin(), residuals_m_.end());
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  if (*middle < kLargeResidual) return "";
+        median_of(&Match::strain));
+  const double residual_m = median_of(&Match::residual_m);
+  if (residual_m < kLargeResidual) return "";
   return fmt::format("frames never fit each other well ({:.0f} mm): check the intrinsics and depth scale",
-                     1e3 * *middle);
+                     1e3 * residual_m);
 }
 
 }  // namespace liloc

@@ -16,10 +16,13 @@ class InputHealth {
   [[nodiscard]] std::string problem() const;
 
  private:
-  int empty_ = 0;                   ///< frames in a row without enough returns
-  int strained_ = 0;                ///< matches in a row that the IMU contradicted
-  double strain_ = 0;               ///< at the last one
-  std::deque<double> residuals_m_;  ///< of the recent matches
+  struct Match {
+    double residual_m, strain;
+  };
+  [[nodiscard]] double median_of(double Match::*figure) const;
+
+  int empty_ = 0;              ///< frames in a row without enough returns
+  std::deque<Match> matches_;  ///< the recent ones
 };
 
 }  // namespace liloc

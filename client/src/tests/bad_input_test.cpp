@@ -20,7 +20,7 @@ struct Feed {
   /// Error of the odometry at the end, metres.
   double run(double seconds) {
     Engine made(options);
-    const auto room = scene::furnished_room(1);
+    const auto room = scene::furnished_room(room_seed);
     const auto imu = scene::imu_along(walk, mounting(), 0, seconds + 0.1, imu_hz_, kStart);
     std::size_t next = 0;
     std::optional<Pose> first;
@@ -48,6 +48,7 @@ struct Feed {
   double hz;
   std::function<bool(ImuSample&)> spoil_imu = [](ImuSample&) { return true; };
   std::function<void(DepthImage&)> spoil_depth = [](DepthImage&) {};
+  unsigned room_seed = 1;
   std::string problem;  ///< the last one said
   int guesses = 0, segments = 0;
   double error_m = 0;
@@ -144,6 +145,20 @@ TEST(BadInput, WrongIntrinsicsAreNoticed) {
   feed.options.camera.fy *= 1.25;
   feed.run(8);
   EXPECT_THAT(feed.problem, HasSubstr("intrinsics"));
+}
+
+TEST(BadInput, EightPercentOfFocalLengthAreNoticedAndNothingElse) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    for (const double factor : {0.92, 1.0, 1.08}) {
+      Feed feed;
+      feed.room_seed = seed;
+      feed.options.camera.fx *= factor;
+      feed.options.camera.fy *= factor;
+      feed.run(8);
+      EXPECT_EQ(feed.problem.find("intrinsics") != std::string::npos, factor != 1.0)
+          << "room " << seed << ", " << factor << " of the focal length: '" << feed.problem << "'";
+    }
+  }
 }
 
 TEST(BadInput, AWrongMountingOfTheImuIsNoticed) {

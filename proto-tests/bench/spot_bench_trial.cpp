@@ -8,6 +8,7 @@
 #include "client/src/engine.hpp"
 #include "common/codec/codec.hpp"
 #include "common/registration/normals.hpp"
+#include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/truth.hpp"
 #include "server/localization/localizer.hpp"
 #include "server/localization/session.hpp"
@@ -31,15 +32,6 @@ struct Device {
   std::unique_ptr<Session> live, searching;  ///< where evidence is gathered
   std::deque<Asked> held;                    ///< not yet answered; oldest first
 };
-
-EngineOptions engine_options(const DeviceInfo& device) {
-  EngineOptions options;
-  options.client_id = device.id;
-  options.camera = device.camera;
-  options.T_imu_sensor = device.T_imu_sensor;
-  options.still_seconds = device.still_seconds;
-  return options;
-}
 
 LocalizerOptions localizer_options(const TrialOptions& options) {
   LocalizerOptions localizer;
@@ -65,7 +57,7 @@ class Trial {
         localizer_(cloud_, server_options_),
         recent_(stage.site.global_lidars.size()) {
     for (const DeviceInfo& device : stage.devices) {
-      devices_.push_back(std::make_unique<Device>(engine_options(device)));
+      devices_.push_back(std::make_unique<Device>(replay::engine_options_of(device, true)));
       devices_.back()->live = std::make_unique<Session>(server_options_);
       devices_.back()->searching = std::make_unique<Session>(server_options_, never());
     }

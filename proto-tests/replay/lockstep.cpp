@@ -25,15 +25,11 @@ struct Device {
 };
 
 EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions& options) {
-  EngineOptions engine;
-  engine.client_id = device.info.id;
-  engine.camera = device.info.camera;
+  EngineOptions engine = engine_options_of(device.info, !device.imu.empty());
   engine.voxel_size_m = options.voxel_m;
   engine.interval_ns = from_ms(options.interval_ms);
   engine.searching_interval_ns = from_ms(options.searching_interval_ms);
   engine.local = *local_method_from(options.local);
-  if (!device.imu.empty()) engine.T_imu_sensor = device.info.T_imu_sensor;
-  engine.still_seconds = device.info.still_seconds;
   engine.cold = options.cold;
   engine.submap = options.submap;
   engine.seed = options.seed;

@@ -112,6 +112,15 @@ Status prepare_out(const fs::path& out) {
   return {};
 }
 
+EngineOptions engine_options_of(const DeviceInfo& device, bool with_imu) {
+  EngineOptions options;
+  options.client_id = device.id;
+  options.camera = device.camera;
+  options.still_seconds = device.still_seconds;
+  if (with_imu) options.T_imu_sensor = device.T_imu_sensor;
+  return options;
+}
+
 fs::path trace_folder(const ReplayOptions& options, const std::string& device_id) {
   return options.out / device_id;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // What is checked and laid out before a replay starts, so that a bad recording costs nothing and leaves
 // nothing.
+#include "client/src/engine.hpp"
 #include "common/recording/recording.hpp"
 #include "proto-tests/replay/options.hpp"
 
@@ -12,6 +13,9 @@ namespace liloc::replay {
 
 /// Makes OUT, or clears what an earlier replay left there. Error: it holds anything else.
 [[nodiscard]] Status prepare_out(const std::filesystem::path& out);
+
+/// What `device.json` tells a client: id, camera, how long it stands still; its IMU where `with_imu`.
+[[nodiscard]] EngineOptions engine_options_of(const DeviceInfo& device, bool with_imu);
 
 /// Name of the folder of a device's traces.
 [[nodiscard]] std::filesystem::path trace_folder(const ReplayOptions& options, const std::string& device_id);

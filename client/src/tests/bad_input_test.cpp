@@ -81,37 +81,45 @@ TEST_P(ImuRate, IsTheDriversChoice) {
 }
 INSTANTIATE_TEST_SUITE_P(Hz, ImuRate, testing::Values(100.0, 400.0));
 
-TEST(BadInput, AnImuThatPausesForASecondIsBridgedAndNamed) {
+struct ImuFault {
+  const char* name;
+  bool (*spoil)(ImuSample&, bool fourth_second);  ///< false: the sample is lost
+  double error_m;
+  const char* says;
+};
+
+void PrintTo(const ImuFault& fault, std::ostream* out) {
+  *out << fault.name;
+}
+
+class FaultyImu : public testing::TestWithParam<ImuFault> {};
+TEST_P(FaultyImu, IsNamedAndDoesLittleHarm) {
   Feed feed;
   feed.spoil_imu = [](ImuSample& s) {
     const double t = to_seconds(s.stamp_ns - kStart);
-    return t < 3 || t > 4;
+    return GetParam().spoil(s, t >= 3 && t <= 4);
   };
-  EXPECT_LT(feed.run(6), 0.05);
-  EXPECT_THAT(feed.problem, HasSubstr("no IMU samples"));
+  EXPECT_LT(feed.run(6), GetParam().error_m);
+  EXPECT_THAT(feed.problem, HasSubstr(GetParam().says));
   EXPECT_EQ(feed.segments, 1);
 }
 
-TEST(BadInput, AnImuInGIsNoticedAndCorrected) {
-  Feed feed;
-  feed.spoil_imu = [](ImuSample& s) {
-    s.specific_force_m_s2 /= 9.80665;
-    return true;
-  };
-  EXPECT_LT(feed.run(6), 0.03);
-  EXPECT_THAT(feed.problem, HasSubstr("in place of m/s^2"));
+bool pauses(ImuSample&, bool now) {
+  return !now;
 }
-
-TEST(BadInput, ASaturatedImuIsNotBelieved) {
-  Feed feed;
-  feed.spoil_imu = [](ImuSample& s) {
-    const double t = to_seconds(s.stamp_ns - kStart);
-    if (t > 3 && t < 4) s.angular_velocity_rad_s = {4.36, -4.36, 4.36};  // the end of a 250 deg/s range
-    return true;
-  };
-  EXPECT_LT(feed.run(6), 0.05);
-  EXPECT_THAT(feed.problem, HasSubstr("end of its range"));
+bool is_in_g(ImuSample& s, bool) {
+  s.specific_force_m_s2 /= 9.80665;
+  return true;
 }
+bool is_saturated(ImuSample& s, bool now) {
+  if (now) s.angular_velocity_rad_s = {4.36, -4.36, 4.36};  // the end of a 250 deg/s range
+  return true;
+}
+INSTANTIATE_TEST_SUITE_P(Faults, FaultyImu,
+                         testing::Values(ImuFault{"pauses", pauses, 0.05, "no IMU samples"},
+                                         ImuFault{"in_g", is_in_g, 0.03, "in place of m/s^2"},
+                                         ImuFault{"saturated", is_saturated, 0.05, "end of its range"}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(BadInput, EmptyFramesAreNamedAndHarmless) {
   Feed feed;

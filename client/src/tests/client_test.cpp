@@ -166,34 +166,38 @@ void feed_ahead(Client& client, double ahead_ms, int frames) {
   }
 }
 
-TEST(Client, AClockThatRunsAheadIsFoundAndItsRequestsCarryTheCeilingsTime) {
+/// A client that asks often, and its server.
+class Clocks : public testing::Test {
+ protected:
+  void SetUp() override {
+    Options o = options();
+    o.interval_ms = 100;
+    auto made = Client::create(o);
+    ASSERT_TRUE(made) << made.error();
+    client = std::move(made.value());
+  }
   FakeServer server;
-  Options o = options();
-  o.interval_ms = 100;
-  auto made = Client::create(o);
-  ASSERT_TRUE(made) << made.error();
-  feed_ahead(*made.value(), 70, 60);
-  const auto stats = made.value()->stats();
+  std::unique_ptr<Client> client;
+};
+
+TEST_F(Clocks, OneThatRunsAheadIsFoundAndRequestsCarryTheCeilingsTime) {
+  feed_ahead(*client, 70, 60);
+  const auto stats = client->stats();
   EXPECT_TRUE(stats.clock_good);
   EXPECT_NEAR(stats.clock_offset_ms, 70, 10);
   EXPECT_EQ(stats.clock_jumps, 0U);
   ASSERT_NE(server.last_ceiling_stamp_ns, 0);
   EXPECT_NEAR(to_ms(server.last_stamp_ns - server.last_ceiling_stamp_ns), 70, 10);
 
-  feed_ahead(*made.value(), 2070, 40);  // somebody set it
-  const auto after = made.value()->stats();
+  feed_ahead(*client, 2070, 40);  // somebody set it
+  const auto after = client->stats();
   EXPECT_EQ(after.clock_jumps, 1U);
   EXPECT_NEAR(after.clock_offset_ms, 2070, 10);
 }
 
-TEST(Client, ClocksInStepAreLeftAlone) {
-  FakeServer server;
-  Options o = options();
-  o.interval_ms = 100;
-  auto made = Client::create(o);
-  ASSERT_TRUE(made) << made.error();
-  feed_ahead(*made.value(), 2, 60);
-  EXPECT_TRUE(made.value()->stats().clock_good);
+TEST_F(Clocks, InStepAreLeftAlone) {
+  feed_ahead(*client, 2, 60);
+  EXPECT_TRUE(client->stats().clock_good);
   EXPECT_GT(server.answered, 3);
   EXPECT_EQ(server.last_ceiling_stamp_ns, 0);
 }

@@ -72,6 +72,7 @@ Result<DriftRun> run_drift(const DeviceRecording& device, const DriftOptions& op
     if (!frame) return tl::unexpected(frame.error());
     run.frames.push_back(std::move(*frame));
     run.truth.push_back((*truth)[i].T_map_sensor);
+    if (std::string now = engine.problem(); !now.empty()) run.problem = std::move(now);
     if (const auto request = engine.take_request()) {
       ++run.requests;
       run.lpc_bytes += request->lpc.bytes.size();
@@ -119,7 +120,7 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
       "{:28} path {:5.2f} m  end {:5.1f} mm {:5.2f} %  {:5.2f} deg  pairs {:.3f} (median {:.1f} mm, jump "
       "{:.0f} mm)  "
       "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B  "
-      "around {} B  residual {:.1f} mm  {:.1f} ms of CPU per second{}\n",
+      "around {} B  residual {:.1f} mm  {:.1f} ms of CPU per second{}{}\n",
       name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
       degrees(rotation_angle_rad(end)), good / static_cast<double>(f.size() - 1), quantile(step_mm, 0.5),
       1e3 * jump_m, quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess, dull,
@@ -128,7 +129,8 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
       run.extra_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
       1e3 * run.cpu_s / seconds,
       run.package_j ? fmt::format("  {:.2f} J per second, reading of files included", *run.package_j / seconds)
-                    : "");
+                    : "",
+      run.problem.empty() ? "" : "  complaint: " + run.problem);
 }
 
 std::string energy_obstacle() {

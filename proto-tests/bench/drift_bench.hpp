@@ -22,6 +22,7 @@ struct DriftRun {
   std::vector<Pose> truth;  ///< T_map_sensor of each
   int requests = 0;
   double worst_up_deg = -1;
+  std::string problem;  ///< the last that the engine complained of
   std::size_t lpc_bytes = 0, extra_bytes = 0;
   double cpu_s = 0;                 ///< of the engine, reading of files left out
   std::optional<double> package_j;  ///< of the whole processor in the time of the run, where the kernel tells

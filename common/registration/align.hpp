@@ -20,9 +20,9 @@ struct AlignResult {
   bool trusted = false;
 };
 
-/// Aligns two bare clouds, each seen from about the origin of its own frame (normals are turned there). Errors:
-/// an option out of range, a cloud with fewer than 50 points after thinning, or one far from its origin. A poor
-/// fit is a result.
+/// Aligns two bare clouds, each seen from about the origin of its own frame: normals are turned there, and
+/// points of one in space that the other saw empty count against a pose. Errors: an option out of range, a
+/// cloud with fewer than 50 points after thinning, or one far from its origin. A poor fit is a result.
 [[nodiscard]] Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target,
                                                const AlignOptions& options);
 

@@ -86,7 +86,6 @@ void for_each_index(std::size_t count, int threads, const Work& work) {
 std::vector<Candidate> ransac(const ScoreField& field, const std::vector<Eigen::Vector3f>& points,
                               const std::vector<Match>& matches, int iterations,
                               const FeatureSearchOptions& options, std::uint64_t seed) {
-  constexpr std::size_t kKeep = 24;
   std::vector<Candidate> best;
   if (matches.size() < 3) return best;
   const auto edge_ratio = static_cast<float>(options.edge_ratio);
@@ -106,7 +105,7 @@ std::vector<Candidate> ransac(const ScoreField& field, const std::vector<Eigen::
     if (score <= floor) continue;
     best.push_back({T.cast<double>(), score / ScoreField::kSurface});
     std::push_heap(best.begin(), best.end(), worse);
-    if (best.size() > kKeep) {
+    if (best.size() > options.keep_per_cell) {
       std::pop_heap(best.begin(), best.end(), worse);
       best.pop_back();
       floor = static_cast<float>(best.front().score) * ScoreField::kSurface;

@@ -28,6 +28,7 @@ struct FeatureSearchOptions {
   bool free_space = true;    ///< samples lose by points in empty space; false: fitness alone, as in the paper
   double edge_ratio = 0.85;  ///< the sides of both triangles agree to this share
   std::size_t propose = 40;
+  std::size_t keep_per_cell = 24;  ///< samples; many are of one place
   std::uint64_t seed = 1;
   int threads = 1;
 };

@@ -1,4 +1,5 @@
 // The program as a user runs it: exit codes, one line per error, what lands where.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
@@ -132,17 +133,24 @@ TEST_F(CommandLine, PcdFilesThatLieAreRefusedBeforeRoomIsMadeForThem) {
   }
 }
 
-TEST_F(CommandLine, AlignsAPublishedPair) {
+TEST_F(CommandLine, AlignsPublishedPairs) {
   const fs::path pairs = "../shared/pairs/kitchen";
   if (!fs::exists(pairs / "gt.log")) GTEST_SKIP() << pairs << " is not there";
-  const Outcome outcome = liloc("align --json " + (pairs / "cloud_bin_1.ply").string() + " " +
-                                (pairs / "cloud_bin_0.ply").string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
-  const auto json = nlohmann::json::parse(outcome.out);
-  EXPECT_TRUE(json["trusted"]);
-  // The first entry of gt.log: fragment 1 into fragment 0.
-  const std::array<double, 3> truth{-0.115577, -0.0387705, 0.114875};
-  for (std::size_t row = 0; row < 3; ++row) EXPECT_NEAR(json["T_target_source"][row][3], truth[row], 0.1);
+  struct Pair {
+    int source, target;
+    std::array<double, 3> truth;  ///< the translation, as gt.log has it
+  };
+  // More points of fragment 8 fit where it slides along a wall of fragment 5, into space that both saw empty.
+  for (const Pair& pair :
+       {Pair{1, 0, {-0.115577, -0.0387705, 0.114875}}, Pair{8, 5, {1.15805, 0.132546, -0.0848382}}}) {
+    const auto fragment = [&](int i) { return (pairs / fmt::format("cloud_bin_{}.ply", i)).string(); };
+    const Outcome outcome = liloc("align --json " + fragment(pair.source) + " " + fragment(pair.target));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_TRUE(json["trusted"]) << outcome.out;
+    for (std::size_t row = 0; row < 3; ++row)
+      EXPECT_NEAR(json["T_target_source"][row][3], pair.truth.at(row), 0.1) << pair.source;
+  }
 }
 
 }  // namespace

@@ -236,7 +236,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.stamp_ns = image.stamp_ns;
   frame.informative = placed->informative;
   frame.method = step.method;
-  frame.converged = step.converged;
+  frame.converged = step.converged && !step.jumped;
   frame.T_odom_sensor = step.T_odom_sensor;
   frame.odom_segment = step.segment;
   frame.residual_m = step.residual_m;

@@ -47,7 +47,8 @@ struct FrameResult {
   StampNs stamp_ns = 0;
   bool informative = true;
   std::string method;  ///< how its pose was found: "first", "icp", "ransac", "inertial", "external", "guess"
-  bool converged = true;
+  bool converged =
+      true;  ///< measured, and no jump from the frame before (sight corrected what had been guessed)
   double latency_ms = 0;
   Pose T_odom_sensor = Pose::Identity();
   std::uint32_t odom_segment = 0;

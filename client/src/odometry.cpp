@@ -78,6 +78,8 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
   const Matrix6d covariance = match.information.inverse();
   step.sd_rad = std::sqrt(covariance.diagonal().head<3>().maxCoeff());
   step.sd_m = std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
+  step.jumped =
+      from.anchored_ns != from.from_ns && distance_m(match.T_map_sensor, guess.T_map_sensor) > options_.jump_m;
   unmatched_ns_ = 0;
   anchored_ns_ = from.to_ns;
   if (step.method == "ransac") return motion_.relocated(match.T_map_sensor);

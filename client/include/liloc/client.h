@@ -116,7 +116,7 @@ typedef struct liloc_pose_update {
   liloc_pose T_odom_sensor; /* smooth; never jumps by a correction (REP-105) */
   uint32_t odom_segment;    /* rises when the odometry broke */
   bool informative;         /* the frame showed enough to be matched */
-  bool converged;           /* its pose was measured, not guessed */
+  bool converged;           /* its pose was measured, and is no jump after guesses */
   int32_t state;            /* liloc_state */
   bool server_connected;
   /* Share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1:

@@ -99,7 +99,7 @@ struct PoseUpdate {
   Pose T_odom_sensor;                ///< smooth; never jumps by a correction (REP-105)
   std::uint32_t odom_segment = 0;    ///< rises when the odometry broke
   bool informative = false;          ///< the frame showed enough to be matched
-  bool converged = false;            ///< its pose was measured, not guessed
+  bool converged = false;            ///< its pose was measured, and is no jump after a stretch of guesses
   State state = State::searching;
   bool server_connected = false;
   /// Share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1:

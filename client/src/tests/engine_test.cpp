@@ -148,6 +148,21 @@ TEST(Engine, ABlockedCameraIsBridgedAndAskedAboutAfterwards) {
   EXPECT_TRUE(walker.engine.take_request());
 }
 
+TEST(Engine, TheJumpBackFromAGuessIsMarked) {
+  Walker walker(engine_options());  // without an IMU the guess stays behind
+  Pose last = walker.step().T_odom_sensor;
+  int jumps = 0;
+  for (int i = 1; i < 60; ++i) {
+    const FrameResult now = walker.step(i > 30 && i <= 36);
+    const Pose T_true = walk(time_of(i - 1)).inverse() * walk(time_of(i));
+    const double step_error_m = distance_m(last * T_true, now.T_odom_sensor);
+    EXPECT_TRUE(!now.converged || step_error_m < 0.03) << "frame " << i << ": " << step_error_m;
+    jumps += !now.converged && now.method == "icp" ? 1 : 0;
+    last = now.T_odom_sensor;
+  }
+  EXPECT_EQ(jumps, 1);
+}
+
 TEST(Engine, ALongBlackoutStartsANewSegmentWhereTheOldOneEnded) {
   Walker walker(engine_options());
   FrameResult frame;

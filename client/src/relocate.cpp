@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kIterations = 20'000;
 constexpr std::size_t kProposals = 12, kSparsePoints = 300;
-constexpr double kStartSdRad = 0.1, kStartSdM = 0.15;  // of a proposal: what three matched points leave open
+constexpr double kTurnsRad[] = {0.2, -0.2, 0.4, -0.4};  // a match finds its way from half of such a step
+constexpr double kStartSdRad = 0.1, kStartSdM = 0.15;   // of a proposal: what three matched points leave open
 
 Cloud cloud_of(const std::vector<Surfel>& frame) {
   Cloud cloud;
@@ -55,6 +56,18 @@ std::vector<ScanMatch> relocate(const LocalMap& map, const std::vector<Surfel>& 
   std::stable_sort(matches.begin(), matches.end(),
                    [](const ScanMatch& a, const ScanMatch& b) { return a.overlap > b.overlap; });
   return matches;
+}
+
+Result<ScanMatch> match_turned(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
+                               StampNs now_ns) {
+  auto best = match_scan(map, frame, guess, now_ns);
+  for (const double turn : kTurnsRad) {
+    MotionGuess turned = guess;
+    turned.T_map_sensor.linear() *= so3_exp({0, turn, 0});
+    auto match = match_scan(map, frame, turned, now_ns);
+    if (match && match->settled && match->overlap > best->overlap) best = std::move(match);
+  }
+  return best;
 }
 
 }  // namespace liloc

@@ -11,4 +11,10 @@ namespace liloc {
 [[nodiscard]] std::vector<ScanMatch> relocate(const LocalMap& map, const std::vector<Surfel>& frame,
                                               StampNs now_ns, std::uint64_t seed);
 
+/// A scan match from the guess and from guesses turned about the sensor's vertical by up to 23 degrees to
+/// either side, for a guess too vague to start from: the one of best overlap. About five times the cost of a
+/// match. Errors: those of `match_scan`.
+[[nodiscard]] Result<ScanMatch> match_turned(const LocalMap& map, const std::vector<Surfel>& frame,
+                                             const MotionGuess& guess, StampNs now_ns);
+
 }  // namespace liloc

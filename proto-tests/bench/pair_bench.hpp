@@ -22,6 +22,8 @@ struct FramePair {
   int gap = 0;  ///< frames from the target to the source
   const OdometryFrame *target = nullptr, *source = nullptr;
   Pose T_target_source_guess = Pose::Identity();  ///< the motion of the same number of frames before
+  double overlap =
+      0;  ///< share of the source's surfels with one of the target's at their place, 0..1, by truth
   [[nodiscard]] Pose truth() const { return target->T_map_sensor.inverse() * source->T_map_sensor; }
 };
 
@@ -29,6 +31,7 @@ struct PairResult {
   std::string method;
   int gap = 0;
   double error_m = 0, error_rad = 0, latency_ms = 0;
+  double overlap = 0;  ///< of the pair
 };
 
 /// Evenly spread pairs, at most `most`. The frames must outlive them.
@@ -50,7 +53,7 @@ struct PairResult {
 [[nodiscard]] Result<std::vector<PairResult>> read_peer(const std::vector<FramePair>& pairs,
                                                         const std::filesystem::path& file);
 
-/// A line for each method and gap.
+/// A line for each method and gap: shares of all pairs, and of those with overlap over 0.3.
 void print_pairs(const std::vector<PairResult>& results);
 
 }  // namespace liloc::bench

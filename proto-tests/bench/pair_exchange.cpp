@@ -55,7 +55,8 @@ Result<std::vector<PairResult>> read_peer(const std::vector<FramePair>& pairs,
     const auto found = by_name.find(name);
     if (found == by_name.end()) continue;
     const Pose truth = found->second->truth();
-    results.push_back({method, found->second->gap, distance_m(*T, truth), angle_between_rad(*T, truth), ms});
+    results.push_back({method, found->second->gap, distance_m(*T, truth), angle_between_rad(*T, truth), ms,
+                       found->second->overlap});
   }
   return results;
 }

@@ -35,8 +35,8 @@ PairResult by_pcl_gicp(const FramePair& pair, double voxel_m) {
   Pose T = Pose::Identity();
   T.matrix() = gicp.getFinalTransformation().cast<double>();
   T = normalized(T);
-  return {"PCL GICP", pair.gap, distance_m(T, pair.truth()), angle_between_rad(T, pair.truth()),
-          watch.elapsed_ms()};
+  return {"PCL GICP",         pair.gap,    distance_m(T, pair.truth()), angle_between_rad(T, pair.truth()),
+          watch.elapsed_ms(), pair.overlap};
 }
 
 }  // namespace liloc::bench

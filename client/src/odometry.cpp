@@ -9,8 +9,9 @@
 namespace liloc {
 namespace {
 
-constexpr double kVagueM = 0.15;       // a guess worse than that does not speak for a match
-constexpr double kGyroTrustRad = 0.2;  // the gyro cannot be off by more over a bridged stretch
+constexpr double kVagueM = 0.15;                       // a guess worse than that does not speak for a match
+constexpr double kVagueRad = 0.1, kPoorOverlap = 0.8;  // one turned by more may lead to a wrong match
+constexpr double kGyroTrustRad = 0.2;                  // the gyro cannot be off by more over a bridged stretch
 
 }  // namespace
 
@@ -39,7 +40,9 @@ bool Odometry::consistent(const ScanMatch& match, const DepthImage& image) const
 
 std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vector<Surfel>& frame,
                                          const MotionGuess& guess, OdometryStep& step) {
-  const auto found = match_scan(map_, frame, guess, image.stamp_ns);
+  auto found = match_scan(map_, frame, guess, image.stamp_ns);
+  if (found && guess.sd_rad() > kVagueRad && found->overlap < kPoorOverlap)
+    found = match_turned(map_, frame, guess, image.stamp_ns);
   if (found)
     log::debug(
         "match: overlap {:.2f} paired {:.2f} rmse {:.1f} mm, {} unobserved, {} iterations, {:.1f} mm {:.3f} "

@@ -51,7 +51,7 @@ TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {
     return scene::looking({3.6 - 0.1 * k, 3.0, 1.2}, 0.8 * GetParam() + 2.2 + 0.1 * k, radians(12));
   };
   world.T_map_odom = elsewhere(5) * world.truth(5).inverse() * world.T_map_odom;
-  bool found = false;
+  std::optional<int> found;
   for (int k = 5; k < 14; ++k) {
     world.watch(k);
     const SpotReply reply = world.localizer->locate(world.request(k, elsewhere(k)));
@@ -60,9 +60,10 @@ TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {
         << "spot " << k << " " << name_of(reply.reason) << " overlap " << reply.overlap << " fitness "
         << reply.fitness << " off " << distance_m(*reply.T_map_sensor, elsewhere(k)) << " m "
         << degrees(angle_between_rad(*reply.T_map_sensor, elsewhere(k))) << " deg";
-    found = found || near(*reply.T_map_sensor, elsewhere(k));
+    if (!found && near(*reply.T_map_sensor, elsewhere(k))) found = k;
   }
-  EXPECT_TRUE(found);
+  ASSERT_TRUE(found);
+  EXPECT_LE(*found, 8) << "two spots to notice, the second of which is the first of three that agree";
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LocalizerLaw, testing::Range(1U, 6U));

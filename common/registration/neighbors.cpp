@@ -1,6 +1,7 @@
 #include "common/registration/neighbors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "common/registration/simd.hpp"
@@ -48,27 +49,26 @@ RadiusSearch::RadiusSearch(const std::vector<Eigen::Vector3f>& points, double ra
   }
 }
 
-void RadiusSearch::Points::clear() {
-  index.clear();
-  x.clear();
-  y.clear();
-  z.clear();
-}
-
-void RadiusSearch::Points::add(const Eigen::Vector3f& p, std::uint32_t i) {
-  index.push_back(i);
-  x.push_back(p.x());
-  y.push_back(p.y());
-  z.push_back(p.z());
-}
-
 void RadiusSearch::gather(const Eigen::Vector3i& centre, Points* points) const {
-  points->clear();
+  std::array<const Run*, 27> runs{};
+  std::size_t found = 0, count = 0;
   for (int dz = -1; dz <= 1; ++dz)
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx)
-        if (const Run* run = find(cell_key(centre + Eigen::Vector3i(dx, dy, dz))))
-          for (std::uint32_t i = run->begin; i < run->end; ++i) points->add(sorted_[i], index_[i]);
+        if (const Run* run = find(cell_key(centre + Eigen::Vector3i(dx, dy, dz)))) {
+          runs[found++] = run;
+          count += run->end - run->begin;
+        }
+  points->index.resize(count);
+  for (auto* axis : {&points->x, &points->y, &points->z}) axis->resize(count);
+  std::size_t at = 0;
+  for (std::size_t r = 0; r < found; ++r)
+    for (std::uint32_t i = runs[r]->begin; i < runs[r]->end; ++i, ++at) {
+      points->index[at] = index_[i];
+      points->x[at] = sorted_[i].x();
+      points->y[at] = sorted_[i].y();
+      points->z[at] = sorted_[i].z();
+    }
 }
 
 RadiusSearch::Neighborhood RadiusSearch::select(const Points& points, const Eigen::Vector3f& p,

@@ -38,8 +38,6 @@ class RadiusSearch {
   struct Points {
     std::vector<std::uint32_t> index;  ///< into the given points
     std::vector<float> x, y, z;
-    void clear();
-    void add(const Eigen::Vector3f& p, std::uint32_t i);
   };
   /// Calls visit(indices of the cell's points, candidates) for each occupied cell; the candidates are the
   /// points of the cell and its 26 neighbours: all that can lie within the radius of any of them.

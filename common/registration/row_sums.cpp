@@ -46,16 +46,16 @@ template <class Blocks>
 }
 
 /// sums[i] = cells[rows[0] + i] + cells[rows[1] + i] + ... over a whole row.
-LILOC_WIDE void sum_rows(const std::int8_t* cells, const std::ptrdiff_t* rows, std::size_t count, int width,
-                         std::int16_t* sums) {
+LILOC_WIDEST void sum_rows(const std::int8_t* cells, const std::ptrdiff_t* rows, std::size_t count, int width,
+                           std::int16_t* sums) {
   int x = 0;
   for (; x + 2 * kBlock <= width; x += 2 * kBlock) sum_block<Two>(cells + x, rows, count, sums + x);
   if (x < width) sum_block<One>(cells + x, rows, count, sums + x);
 }
 
 /// Which blocks hold a value above the threshold; `found` has room for all. Returns how many do.
-LILOC_WIDE std::size_t blocks_above(const std::int16_t* values, std::size_t blocks, std::int16_t threshold,
-                                    std::uint32_t* found) {
+LILOC_WIDEST std::size_t blocks_above(const std::int16_t* values, std::size_t blocks, std::int16_t threshold,
+                                      std::uint32_t* found) {
   std::size_t count = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     std::int16_t most = values[b * kBlock];

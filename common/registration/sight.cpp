@@ -34,6 +34,20 @@ LILOC_WIDE void project(const Pinhole& c, const float* x, const float* y, const 
   }
 }
 
+constexpr std::uint16_t kNoDepth = 65535;
+
+/// Takes a row of depths into the nearest and farthest of each column; 0 and what is too far are left out.
+LILOC_WIDEST void take_row(const std::uint16_t* units, std::uint16_t farthest, std::size_t count,
+                           std::uint16_t* near, std::uint16_t* far) {
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint16_t value = units[i] > farthest ? std::uint16_t{0} : units[i];
+    const std::uint16_t nearer = value == 0 ? kNoDepth : value;
+    near[i] = near[i] < nearer ? near[i] : nearer;
+    far[i] = far[i] > value ? far[i] : value;
+  }
+}
+
 }  // namespace
 
 void SightView::prepare(const Camera& small) {
@@ -54,16 +68,24 @@ SightView SightView::from_depth(const DepthImage& image, const Camera& camera, c
   view.prepare(shrunk(camera, factor));
   view.T_sensor_world_ = T_sensor_world.cast<float>();
   const auto scale = static_cast<float>(camera.depth_scale_m);
-  const auto farthest = static_cast<float>(max_range_m);
-  for (int v = 0; v < image.height; ++v) {
-    Band* row = view.bands_.data() + static_cast<std::ptrdiff_t>(v / factor) * view.width_;
-    for (int u = 0; u < image.width; ++u) {
-      const std::uint16_t units = image.at(u, v);
-      const float z = static_cast<float>(units) * scale;
-      if (units == 0 || z > farthest) continue;
-      Band& band = row[u / factor];
-      band.near = band.far == 0 ? z : std::min(band.near, z);
-      band.far = std::max(band.far, z);
+  const auto farthest =
+      static_cast<std::uint16_t>(std::min(65534.0F, std::floor(static_cast<float>(max_range_m) / scale)));
+  const auto width = static_cast<std::size_t>(image.width);
+  std::vector<std::uint16_t> near(width), far(width);
+  for (int v = 0; v < image.height; v += factor) {
+    std::ranges::fill(near, kNoDepth);
+    std::ranges::fill(far, std::uint16_t{0});
+    for (int row = v; row < std::min(v + factor, image.height); ++row)
+      take_row(image.units.data() + static_cast<std::size_t>(row) * width, farthest, width, near.data(),
+               far.data());
+    Band* bands = view.bands_.data() + static_cast<std::ptrdiff_t>(v / factor) * view.width_;
+    for (std::size_t u = 0; u < width; u += static_cast<std::size_t>(factor)) {
+      const std::size_t end = std::min(u + static_cast<std::size_t>(factor), width);
+      const std::uint16_t least = *std::min_element(&near[u], near.data() + end),
+                          most = *std::max_element(&far[u], far.data() + end);
+      if (most > 0)
+        bands[u / static_cast<std::size_t>(factor)] = {static_cast<float>(least) * scale,
+                                                       static_cast<float>(most) * scale};
     }
   }
   view.widen();

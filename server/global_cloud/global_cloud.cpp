@@ -10,6 +10,8 @@ namespace {
 constexpr std::size_t kSnapshotsKept = 6, kRoomsKept = 3;  // a room's indices are some 20 MB, a snapshot 1 MB
 constexpr int kLateOnes = 3;                               // in a row: it is not one bad stamp
 
+constexpr int kRoomsDescribedAhead = 16;  // once one was asked for; a crowded room is renewed every second
+
 StampNs gap(StampNs a, StampNs b) {
   return a > b ? a - b : b - a;
 }
@@ -150,6 +152,7 @@ Result<std::shared_ptr<const Snapshot>> GlobalCloud::nearest(StampNs stamp_ns) {
 
 void GlobalCloud::prepare() {
   std::shared_ptr<const StitchedRoom> room;
+  bool describe = false;
   {
     const std::scoped_lock lock(mutex_);
     StampNs newest = 0;
@@ -161,8 +164,15 @@ void GlobalCloud::prepare() {
         frames.push_back(held.back());
     if (frames.empty()) return;
     room = room_of(frames);
+    const auto asked = [](const auto& known) { return known->descriptors_asked(); };
+    if (std::ranges::any_of(rooms_, asked))
+      describe_ahead_ = kRoomsDescribedAhead;
+    else if (room != prepared_ && describe_ahead_ > 0)
+      --describe_ahead_;
+    prepared_ = room;
+    describe = describe_ahead_ > 0;
   }
-  room->prepare();
+  room->prepare(describe);
 }
 
 }  // namespace liloc

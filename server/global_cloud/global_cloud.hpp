@@ -40,7 +40,8 @@ class GlobalCloud {
   [[nodiscard]] Result<std::shared_ptr<const Snapshot>> nearest(StampNs stamp_ns);
 
   /// Builds what the next snapshot will need of the room as it is now, so that no request has to wait for it.
-  /// Costs nothing while the room does not change. Called by a thread of its own.
+  /// Costs nothing while the room does not change; descriptors only while some request lately asked for them.
+  /// Called by a thread of its own.
   void prepare();
 
   [[nodiscard]] const Site& site() const { return site_; }
@@ -70,6 +71,8 @@ class GlobalCloud {
   StampNs epoch_since_ns_ = 0;
   std::deque<std::shared_ptr<const Snapshot>> snapshots_;  ///< asked for lately, newest last
   std::deque<std::shared_ptr<const StitchedRoom>> rooms_;  ///< of them
+  std::shared_ptr<const StitchedRoom> prepared_;           ///< newest
+  int describe_ahead_ = 0;  ///< so many rooms more get their descriptors before anyone asks for them
 };
 
 }  // namespace liloc

@@ -75,6 +75,7 @@ const std::shared_ptr<const Surfaces>& StitchedRoom::surfaces() const {
 const Described& StitchedRoom::described() const {
   std::call_once(described_once_, [this] {
     described_ = describe(surfaces()->coarse, {10 * options_.voxel_size_m, options_.feature_sampling, 1});
+    has_descriptors_ = true;
   });
   return described_;
 }
@@ -89,11 +90,11 @@ const std::vector<Eigen::Vector3d>& StitchedRoom::ups_map() const {
   return ups_map_;
 }
 
-void StitchedRoom::prepare() const {
+void StitchedRoom::prepare(bool describe) const {
   if (surfaces()->cloud.empty()) return;
   (void)surfaces()->field_fine();
   (void)ups_map();
-  (void)described();
+  if (describe) (void)described();
 }
 
 const Target& Snapshot::target() const {

@@ -1,6 +1,7 @@
 #pragma once
 // One moment of the room: what each ceiling LiDAR sees, and the surfaces that this moment shares with its
 // neighbours.
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -74,10 +75,14 @@ class StitchedRoom {
   [[nodiscard]] const Parts& parts() const { return parts_; }
   [[nodiscard]] const std::shared_ptr<const Surfaces>& surfaces() const;
   [[nodiscard]] const Described& described() const;
+  [[nodiscard]] bool has_descriptors() const { return has_descriptors_; }
+  /// Whether a request has asked for descriptors.
+  [[nodiscard]] bool descriptors_asked() const { return descriptors_asked_; }
+  void note_descriptors_asked() const { descriptors_asked_ = true; }
   /// What may be up in the map frame, likeliest first: z alone in a site that is set up as it should be.
   [[nodiscard]] const std::vector<Eigen::Vector3d>& ups_map() const;
-  /// Builds all of it now, so that no request has to. Costs nothing the second time.
-  void prepare() const;
+  /// Builds all of it now, descriptors if `describe`, so that no request has to. Costs nothing the second time.
+  void prepare(bool describe) const;
 
  private:
   const Parts parts_;
@@ -86,6 +91,7 @@ class StitchedRoom {
   mutable std::vector<Eigen::Vector3d> ups_map_;
   mutable std::shared_ptr<const Surfaces> surfaces_;
   mutable Described described_;
+  mutable std::atomic<bool> has_descriptors_ = false, descriptors_asked_ = false;
 };
 
 /// Immutable; shared by all clients whose requests fall on it.
@@ -101,7 +107,10 @@ class Snapshot {
   /// The GPC and the ceiling's lines of sight; the first caller builds what is not built yet.
   [[nodiscard]] const Target& target() const;
   /// Descriptors of the thinned GPC.
-  [[nodiscard]] const Described& described() const { return room_->described(); }
+  [[nodiscard]] const Described& described() const {
+    room_->note_descriptors_asked();
+    return room_->described();
+  }
 
  private:
   const StampNs stamp_ns_;

@@ -36,6 +36,24 @@ TEST(GlobalCloud, MatchesTheNearestFramesWithin100Ms) {
   EXPECT_THAT(cloud.nearest(kT0 + from_ms(2000)).error().message, testing::HasSubstr("within 100 ms"));
 }
 
+TEST(GlobalCloud, DescriptorsAreMadeAheadOnceSomebodyNeedsThem) {
+  GlobalCloud cloud(two_lidars(), {});
+  const auto room_after = [&](int first, int last) {
+    for (int i = first; i < last; ++i)
+      for (const std::size_t lidar : {0U, 1U})
+        EXPECT_TRUE(cloud.add_depth(lidar, wall(kT0 + from_ms(125 * i))));
+    cloud.prepare();
+    return *cloud.nearest(kT0 + from_ms(125 * (last - 1)));
+  };
+  const auto first = room_after(0, 2);
+  EXPECT_FALSE(first->room()->has_descriptors()) << "nobody searches by features";
+  (void)first->described();
+  EXPECT_TRUE(first->room()->has_descriptors());
+  const auto second = room_after(2, 4);  // the third frame renews the room
+  EXPECT_NE(second->room(), first->room());
+  EXPECT_TRUE(second->room()->has_descriptors());
+}
+
 TEST(GlobalCloud, ASilentLidarIsLeftOut) {
   GlobalCloud cloud(two_lidars(), {});
   ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));

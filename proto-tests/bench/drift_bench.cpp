@@ -106,8 +106,8 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
       const Pose E = run.error(0, i);
       const double step_m = i > 0 ? run.error(i - 1, i).translation().norm() : 0;
       fmt::print("{:4d} {:8} inf {} conv {} seg {} step {:.1f} mm err {:.1f} mm {:.3f} deg\n", i, f[i].method,
-                 f[i].informative, f[i].converged, f[i].odom_segment, 1e3 * step_m, 1e3 * E.translation().norm(),
-                 degrees(rotation_angle_rad(E)));
+                 f[i].informative, f[i].converged, f[i].odom_segment, 1e3 * step_m,
+                 1e3 * E.translation().norm(), degrees(rotation_angle_rad(E)));
     }
     if (i == 0) continue;
     path += distance_m(run.truth[i], run.truth[i - 1]);

@@ -89,7 +89,8 @@ DepthImage Background::surfaces() {
   replaced_ = 0;
   DepthImage image{last_ns_, width_, height_, {}};
   image.units.reserve(pixels_.size());
-  for (const Pixel& pixel : pixels_) image.units.push_back(static_cast<std::uint16_t>(std::lround(pixel.surface)));
+  for (const Pixel& pixel : pixels_)
+    image.units.push_back(static_cast<std::uint16_t>(std::lround(pixel.surface)));
   return image;
 }
 

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kVagueM = 0.15;                       // a guess worse than that does not speak for a match
 constexpr double kVagueRad = 0.1, kPoorOverlap = 0.8;  // one turned by more may lead to a wrong match
-constexpr double kGyroTrustRad = 0.2;                  // the gyro cannot be off by more over a bridged stretch
+constexpr double kReachM = 0.3, kReachSpeed = 2;  // m/s: nobody carries a device off faster while it is blind
+constexpr double kGyroTrustRad = 0.2;             // the gyro cannot be off by more over a bridged stretch
 
 }  // namespace
 
@@ -60,9 +61,11 @@ std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vec
   if (options_.method == LocalMethod::inertial || image.stamp_ns - recovered_ns_ < options_.recover_ns)
     return std::nullopt;
   recovered_ns_ = image.stamp_ns;
+  const double reach_m = kReachM + kReachSpeed * to_seconds(image.stamp_ns - anchored_ns_);
   for (const ScanMatch& candidate : relocate(map_, frame, image.stamp_ns, options_.seed)) {
     const double turned = angle_between_rad(candidate.T_map_sensor, guess.T_map_sensor);
     if (options_.T_imu_sensor && turned > kGyroTrustRad) continue;
+    if (distance_m(candidate.T_map_sensor, guess.T_map_sensor) > reach_m) continue;
     if (!consistent(candidate, image)) continue;
     step.method = "ransac";
     return candidate;

@@ -163,6 +163,23 @@ TEST(Engine, TheJumpBackFromAGuessIsMarked) {
   EXPECT_EQ(jumps, 1);
 }
 
+TEST(Engine, AfterABlackoutItIsNotFoundWhereNobodyCarriesItInThatTime) {
+  const auto room = scene::furnished_room(2);
+  Engine engine(engine_options());
+  const auto see = [&](double x, int frame) {
+    return *engine.add_depth(scene::render(room, scene::looking({x, 2.5, 1.2}, 0.5 * (x - 1.2), 0.2),
+                                           scene::small_camera(), stamp_of(frame), 0.004));
+  };
+  int frame = 0;
+  for (; frame < 60; ++frame) see(1.2 + 3.0 * frame / 60, frame);  // 0.75 m/s
+  const Pose last = see(4.2, frame++).T_odom_sensor;
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(engine.add_depth(covered_at(frame++)));
+  for (int i = 0; i < 5; ++i) {  // the view of the start, 3 m away, a third of a second later
+    const FrameResult now = see(1.2, frame++);
+    EXPECT_LT(distance_m(last, now.T_odom_sensor), 1.5) << now.method;
+  }
+}
+
 TEST(Engine, ALongBlackoutStartsANewSegmentWhereTheOldOneEnded) {
   Walker walker(engine_options());
   FrameResult frame;

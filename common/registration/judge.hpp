@@ -17,15 +17,14 @@ struct Judgement {
 };
 
 /// A conflict against an agreement, once a pose is refined; see DECISIONS.md.
-constexpr double kConflictWeight = 16.0;
-
-enum class MapShare { all, half };
+constexpr double kConflictWeight = 32.0;
 
 /// Scores a pose: every proposer's candidates pass through here and nothing else ranks them. `tolerance_m` is
-/// how far the pose may still be off. Unseen space is neutral. `map_share`: how many of
-/// the target's thinned points are asked. Pure; cost is linear in both clouds.
+/// how far the pose may still be off. Unseen space is neutral, and so is free space
+/// where somebody moves. `map_share`: how many of the target's thinned points are asked; `map_points`: instead
+/// of all of them, those that can matter. Pure; cost is linear in both clouds.
 [[nodiscard]] Judgement judge(const Target& target, const Query& query, const Cloud& device_points,
                               const Pose& T_map_sensor, double tolerance_m, MapShare map_share = MapShare::all,
-                              double conflict_weight = kConflictWeight);
+                              double conflict_weight = kConflictWeight, const MapPoints* map_points = nullptr);
 
 }  // namespace liloc

@@ -18,6 +18,7 @@ class Pairs {
       to_plane_.emplace(side);
   }
 
+  [[nodiscard]] double hold() const { return options_.hold; }
   [[nodiscard]] NormalEquations at(const Pose& T, double distance_m) {
     return to_plane_ ? to_plane_->at(T, distance_m, options_.min_normal_agreement)
                      : point_to_point(T, distance_m);
@@ -61,16 +62,25 @@ Pose moved(const Pose& T, const Vector6d& step) {
   return result;
 }
 
-/// Pulls towards the prior, in the same axes as the pairs: about the source's origin.
-void add_prior(const PosePrior& prior, const Pose& T, NormalEquations* sum) {
-  const double variance = prior.residual_sd_m * prior.residual_sd_m;
-  const double w_rotation = variance / (prior.sd_rad * prior.sd_rad),
-               w_shift = variance / (prior.sd_m * prior.sd_m);
-  const Eigen::Vector3d turn = so3_log(T.linear() * prior.T_target_source.linear().transpose());
+/// Pulls towards a pose, in the same axes as the pairs: about the source's origin.
+void add_pull(const Pose& T_wanted, double w_rotation, double w_shift, const Pose& T, NormalEquations* sum) {
+  const Eigen::Vector3d turn = so3_log(T.linear() * T_wanted.linear().transpose());
   sum->H.topLeftCorner<3, 3>().diagonal().array() += w_rotation;
   sum->H.bottomRightCorner<3, 3>().diagonal().array() += w_shift;
   sum->g.head<3>() += w_rotation * turn;
-  sum->g.tail<3>() += w_shift * (T.translation() - prior.T_target_source.translation());
+  sum->g.tail<3>() += w_shift * (T.translation() - T_wanted.translation());
+}
+
+void add_prior(const PosePrior& prior, const Pose& T, NormalEquations* sum) {
+  const double variance = prior.residual_sd_m * prior.residual_sd_m;
+  add_pull(prior.T_target_source, variance / (prior.sd_rad * prior.sd_rad),
+           variance / (prior.sd_m * prior.sd_m), T, sum);
+}
+
+/// As if a share of the pairs held every direction; one pair in two tells of a turn about an axis.
+void add_hold(double share, const Pose& T_start, const Pose& T, NormalEquations* sum) {
+  const double turning = sum->H.topLeftCorner<3, 3>().trace() / 2;
+  add_pull(T_start, share * turning, share * sum->weight, T, sum);
 }
 
 /// The distance of pairs between far and near.
@@ -81,11 +91,13 @@ double middle_of(const RefineOptions& options) {
 /// Iterates with a distance that shrinks geometrically; true when the last step was small.
 bool iterate(Pairs& pairs, int iterations, double from_m, double to_m, const PosePrior* prior, Pose* T) {
   bool small = false;
+  const Pose T_start = *T;
   for (int i = 0; i < iterations; ++i) {
     const double share = iterations > 1 ? std::min(1.0, 1.5 * i / (iterations - 1.0)) : 1.0;
     NormalEquations sum = pairs.at(*T, from_m * std::pow(to_m / from_m, share));
     if (sum.pairs < 12) return false;
     if (prior != nullptr) add_prior(*prior, *T, &sum);
+    if (pairs.hold() > 0) add_hold(pairs.hold(), T_start, *T, &sum);
     const Vector6d step = solve(sum);
     *T = moved(*T, step);
     small = step.head<3>().norm() < 2e-4 && step.tail<3>().norm() < 5e-4;

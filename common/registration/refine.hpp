@@ -11,7 +11,10 @@ struct RefineOptions {
   int fine_iterations = 8;            ///< thinned device cloud against the full target
   double min_normal_agreement = 0.5;  ///< cosine between the two normals of a pair
   double fit_distance_m = 0.05;       ///< a point with one of the target's so near counts for the fitness
-  bool point_to_point = false;        ///< the paper's ICP, for comparison
+  /// How tightly each of the three passes is held to where it starts: as by so large a share of all pairs, were
+  /// they to hold that direction. Noisy normals on a bare floor walk further than its few real edges pull.
+  double hold = 0;
+  bool point_to_point = false;  ///< the paper's ICP, for comparison
 };
 
 /// How well a pose fits. Where the pose itself is poor this is a graded result, not an error.

@@ -43,6 +43,14 @@ class SightView {
     return compare(bands_[pixel], p.z(), tolerance_m);
   }
 
+  /// Whether a point of the sensor's frame can come into view by moving `margin_m`; may err towards yes.
+  [[nodiscard]] bool may_see(const Eigen::Vector3f& p, float margin_m) const {
+    const float z = p.z() + margin_m, u = p.x() * fx_ + cx_ * z, v = p.y() * fy_ + cy_ * z;
+    const float slack_u = 2 * margin_m * fx_, slack_v = 2 * margin_m * fy_;
+    return z > kNearest && u > -slack_u && u < width_f_ * z + slack_u && v > -slack_v &&
+           v < height_f_ * z + slack_v;
+  }
+
   struct Tally {
     int agree = 0, conflict = 0;
   };

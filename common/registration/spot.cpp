@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/registration/settle.hpp"
 #include "common/registration/up.hpp"
 
 namespace liloc {
@@ -68,20 +69,51 @@ Hypothesis refine_and_judge(const SpotProblem& problem, const Pose& T_map_sensor
   return h;
 }
 
+namespace {
+
+/// Moves each candidate nearer with few points, unless that makes it worse, as it does where surfaces do not
+/// hold a pose; and scores it.
+void sketch(const SpotProblem& problem, std::vector<Candidate>* candidates) {
+  const JudgeOptions& options = problem.judging;
+  const auto score = [&](const Pose& T_map_sensor) {
+    return judge(problem.target, problem.query, problem.query.sparse, T_map_sensor, options.sketch_tolerance_m,
+                 MapShare::half, options.sketch_conflict_weight)
+        .score;
+  };
+  for (Candidate& c : *candidates) {
+    const Pose nearer =
+        approach(problem.target, problem.query, c.T_map_sensor, kSketchIterations, options.refine);
+    c.score = score(c.T_map_sensor);
+    const double score_nearer = score(nearer);
+    if (score_nearer < c.score) continue;
+    c.score = score_nearer;
+    c.T_map_sensor = nearer;
+  }
+}
+
+/// Lines of sight settle what surfaces do not, unless something else explains all by far better.
+std::vector<Hypothesis> refined_of(const SpotProblem& problem, const std::vector<Candidate>& candidates) {
+  std::vector<Hypothesis> refined;
+  bool clean = false;
+  for (const Candidate& c : candidates) {
+    refined.push_back(refine_and_judge(problem, c.T_map_sensor));
+    clean = clean || is_clean(refined.back());
+  }
+  if (problem.target.views.empty()) return refined;
+  for (std::size_t i = 0; i < refined.size(); ++i)
+    if (!is_clean(refined[i]) && (!clean || candidates[i].score > candidates[0].score - problem.judging.rival))
+      refined[i] = settle(problem, candidates[i].T_map_sensor, std::move(refined[i]));
+  return refined;
+}
+
+}  // namespace
+
 std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector<Candidate> candidates) {
   const JudgeOptions& options = problem.judging;
-  const Target& target = problem.target;
-  const Query& query = problem.query;
   candidates = distinct(std::move(candidates), options.sketch_most);
-  for (Candidate& c : candidates) {
-    c.T_map_sensor = approach(target, query, c.T_map_sensor, kSketchIterations, options.refine);
-    c.score = judge(target, query, query.sparse, c.T_map_sensor, options.sketch_tolerance_m, MapShare::half,
-                    options.sketch_conflict_weight)
-                  .score;
-  }
-  std::vector<Hypothesis> refined;
-  for (const Candidate& c : distinct(std::move(candidates), options.refine_most))
-    refined.push_back(refine_and_judge(problem, c.T_map_sensor));
+  sketch(problem, &candidates);
+  candidates = distinct(std::move(candidates), options.refine_most);
+  std::vector<Hypothesis> refined = refined_of(problem, candidates);
   std::stable_sort(refined.begin(), refined.end(), [](const Hypothesis& a, const Hypothesis& b) {
     return a.judgement.score > b.judgement.score;
   });

@@ -13,6 +13,31 @@ namespace {
 constexpr FieldOptions kCoarseField{0.2, 0.13, -10, 40};  // padded for devices that see 8 m far
 constexpr FieldOptions kFineField{0.1, 0.08, -40, 0};
 
+constexpr double kBeside_m = 0.2;   // of what is seen of somebody from above: the rest, and a step in 0.1 s
+constexpr double kAround_m = 0.45;  // within which they hide a surface from the device, or are one themselves
+constexpr float kGone_m = 0.05F;
+
+/// Surfaces near `around`, and those that a ceiling sensor looks through by now and none sees any more.
+std::vector<std::uint8_t> stale_points(const Cloud& cloud_map, const std::vector<SightView>& views,
+                                       const Movers& around) {
+  std::vector<std::uint8_t> stale(cloud_map.size(), 0);
+  for (std::size_t i = 0; i < cloud_map.size(); ++i) {
+    const Eigen::Vector3f& p = cloud_map.points[i];
+    const auto any = [&](Sight word) {
+      return std::ranges::any_of(views, [&](const SightView& view) { return view.look(p, kGone_m) == word; });
+    };
+    stale[i] = around.at(p) || (any(Sight::conflict) && !any(Sight::agrees)) ? 1 : 0;
+  }
+  return stale;
+}
+
+MapPoints map_points_of(const Cloud& cloud_map, const std::vector<std::uint8_t>& stale) {
+  std::vector<Eigen::Vector3f> sound, doubtful;
+  for (std::size_t i = 0; i < cloud_map.size(); ++i)
+    (stale[i] != 0 ? doubtful : sound).push_back(cloud_map.points[i]);
+  return MapPoints(sound, doubtful);
+}
+
 /// About `count` points spread evenly in space: the coarsest voxel grid that still has so many, then a random
 /// cut.
 Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, std::uint64_t seed) {
@@ -33,20 +58,12 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
   return thin;
 }
 
-Vectors every_other_first(const Cloud& cloud) {
-  Vectors vectors(cloud.size());
-  const std::size_t half = (cloud.size() + 1) / 2;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    vectors.set(i % 2 == 0 ? i / 2 : half + i / 2, cloud.points[i]);
-  return vectors;
-}
-
 }  // namespace
 
 Surfaces::Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m)
     : cloud(std::move(cloud_map)),
       coarse(voxel_downsample(cloud, 2 * voxel_size_m)),
-      coarse_halves(every_other_first(coarse)),
+      map_points(coarse.points),
       nearest(cloud.points, voxel_size_m, 1.3 * voxel_size_m),
       nearest_coarse(coarse.points, 3 * voxel_size_m, 0.32),
       views_(std::move(views)) {}
@@ -67,6 +84,11 @@ const ScoreField& Surfaces::field_fine() const {
   build_fields();
   return field_fine_;
 }
+
+Present::Present(const Surfaces& surfaces, const std::vector<SightView>& views, const Cloud& moving_map)
+    : movers(moving_map, kBeside_m),
+      stale(stale_points(surfaces.coarse, views, Movers(moving_map, kAround_m))),
+      map_points(map_points_of(surfaces.coarse, stale)) {}
 
 Target make_target(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m) {
   auto surfaces = std::make_shared<const Surfaces>(std::move(cloud_map), views, voxel_size_m);

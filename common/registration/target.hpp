@@ -1,11 +1,14 @@
 #pragma once
 // The two sides of a global registration, each with what is computed once and read by every proposer and the
 // judge.
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include "common/geometry/cloud.hpp"
+#include "common/registration/map_points.hpp"
+#include "common/registration/movers.hpp"
 #include "common/registration/nearest_grid.hpp"
 #include "common/registration/score_field.hpp"
 #include "common/registration/sight.hpp"
@@ -20,8 +23,8 @@ class Surfaces {
   Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m);
 
   const Cloud cloud;
-  const Cloud coarse;           ///< at twice the voxel size
-  const Vectors coarse_halves;  ///< its points, every other one first
+  const Cloud coarse;          ///< at twice the voxel size
+  const MapPoints map_points;  ///< its points, for the judge
   const NearestGrid nearest, nearest_coarse;
 
   /// What a device point is worth at each place, at 0.2 m and at 0.1 m: for searches. The first caller builds
@@ -37,11 +40,21 @@ class Surfaces {
   mutable ScoreField field_coarse_, field_fine_;
 };
 
+/// Where the ceiling's word does not count right now, because somebody moves there or has just left.
+struct Present {
+  Present(const Surfaces& surfaces, const std::vector<SightView>& views, const Cloud& moving_map);
+
+  const Movers movers;                    ///< around whom lines of sight past them say nothing
+  const std::vector<std::uint8_t> stale;  ///< of each point of Surfaces::coarse: hidden, or not there any more
+  const MapPoints map_points;             ///< the same points for the judge
+};
+
 /// What a spot is registered against: surfaces, which many moments share, and what the ceiling sees right now.
 struct Target {
   std::shared_ptr<const Surfaces> surfaces;
-  std::vector<SightView> views;  ///< empty when two bare clouds are aligned
-  Cloud moving_map = {};         ///< what the ceiling sees move right now, thinned
+  std::vector<SightView> views;                 ///< empty when two bare clouds are aligned
+  Cloud moving_map = {};                        ///< what the ceiling sees move right now, thinned
+  std::shared_ptr<const Present> present = {};  ///< null: nothing moves
 
   [[nodiscard]] const Surfaces* operator->() const { return surfaces.get(); }
 };

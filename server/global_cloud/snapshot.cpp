@@ -104,6 +104,7 @@ const Target& Snapshot::target() const {
       target_.views.push_back(frame->view());
       append(target_.moving_map, frame->moving_map());
     }
+    target_.present = std::make_shared<const Present>(*target_.surfaces, target_.views, target_.moving_map);
   });
   return target_;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/registration/pose_covariance.hpp"
+#include "common/registration/settle.hpp"
 
 namespace liloc {
 namespace {
@@ -148,7 +149,8 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
   // The prior holds what no surface shows and hardly weighs otherwise: the filter weighs afterwards.
   const PosePrior prior{predicted, std::max(estimate_->sd_rad(), verify_.locked_sd_rad),
                         std::max(estimate_->sd_m(), verify_.locked_sd_m), verify_.prior_residual_sd_m};
-  const Hypothesis here = refine_and_judge(spot.problem(), predicted, &prior);
+  Hypothesis here = refine_and_judge(spot.problem(), predicted, &prior);
+  if (!is_clean(here)) here = settle(spot.problem(), predicted, std::move(here));
   evidence_ = {};
   evidence_.best = here;
   evidence_.stayed = same_place(here.T_map_sensor(), predicted, verify_.tracks.gate);

@@ -17,12 +17,6 @@ bool convincing(const std::vector<Hypothesis>& found) {
          margin_of(found) > 0.15;
 }
 
-/// A search with gravity that is borne out needs no search without when it ends here: it has looked at every
-/// place, and what it found contradicts little.
-bool plausible(const std::vector<Hypothesis>& found) {
-  return !found.empty() && found.front().judgement.overlap() > 0.97 && found.front().judgement.agree > 0.2;
-}
-
 /// Merges two lists of hypotheses, best first, one per place.
 std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypothesis>& b) {
   for (const Hypothesis& h : b)
@@ -110,7 +104,7 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
   std::vector<Hypothesis> found;
   for (const UpPair& up : ups_to_try(problem)) {
     found = merged(std::move(found), judge_candidates(problem, GravityProposer(up).propose(problem)));
-    if (up.borne_out && (convincing(found) || plausible(found))) return found;
+    if (up.borne_out && !found.empty()) return found;  // every place was looked at; features never won there
   }
   if (convincing(found)) return found;
   std::vector<Hypothesis> by_features =

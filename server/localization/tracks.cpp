@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/registration/settle.hpp"
+
 namespace liloc {
 double Track::total() const {
   return std::accumulate(scores.begin(), scores.end(), 0.0);
@@ -35,7 +37,10 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
       (*taken)[i] = true;
       own = true;
     }
-  if (!here) here = refine_and_judge(spot.problem(), predicted);
+  if (!here) {
+    here = refine_and_judge(spot.problem(), predicted);
+    if (!is_clean(*here)) here = settle(spot.problem(), predicted, std::move(*here));
+  }
   const bool stayed = same_place(here->T_map_sensor(), predicted, options_.gate);
   if (stayed)
     track->T_map_odom = here->T_map_sensor() * spot.T_odom_sensor().inverse();

@@ -31,6 +31,7 @@ std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& o
 
 bool holds(const Evidence& evidence, const VerifyOptions& options) {
   return follows(evidence, options) && evidence.best->judgement.map_agree >= options.verified_map_agree &&
+         evidence.best->judgement.overlap() >= options.verified_overlap &&
          sure(evidence.best_estimate, options);
 }
 

@@ -22,6 +22,7 @@ struct VerifyOptions {
   double confirmed_map_agree =
       0.98;                          ///< of several spots: least share of agreeing ceiling points, at first ...
   double verified_map_agree = 0.96;  ///< ... and once they are believed
+  double verified_overlap = 0.98;    ///< least share of agreeing among judged device points
   double verified_sd_rad = radians(2.0), verified_sd_m = 0.08;  ///< most, in any direction
   double locked_sd_rad = radians(1.0), locked_sd_m = 0.05;      ///< least, to hold a refinement near its start
   double prior_residual_sd_m = 0.05;                            ///< of a pair of it

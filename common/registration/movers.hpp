@@ -1,0 +1,39 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/cloud.hpp"
+
+namespace liloc {
+
+/// Where something moves right now: all within `reach_m` of what the ceiling sees move. Immutable.
+class Movers {
+ public:
+  Movers() = default;
+  /// Non-finite points are left out.
+  Movers(const Cloud& moving_map, double reach_m);
+
+  [[nodiscard]] bool empty() const { return cells_.empty(); }
+  [[nodiscard]] bool at(const Eigen::Vector3f& p_map) const {
+    const Eigen::Vector3f q = (p_map - origin_) * inverse_;
+    return !cells_.empty() && (q.array() >= 0).all() && (q.array() < extent_.array()).all() &&
+           cells_[index(q.cast<int>())] != 0;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(const Eigen::Vector3i& cell) const {
+    return (static_cast<std::size_t>(cell.z()) * static_cast<std::size_t>(size_.y()) +
+            static_cast<std::size_t>(cell.y())) *
+               static_cast<std::size_t>(size_.x()) +
+           static_cast<std::size_t>(cell.x());
+  }
+  void stamp(const Eigen::Array3f& q_m, float reach_m);
+
+  float inverse_ = 1;
+  Eigen::Vector3f origin_ = Eigen::Vector3f::Zero(), extent_ = Eigen::Vector3f::Zero();  ///< extent in cells
+  Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
+  std::vector<std::uint8_t> cells_;
+};
+
+}  // namespace liloc

@@ -103,7 +103,9 @@ std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& sp
   if (own_answers_.size() > 3) own_answers_.pop_front();
   evidence_ = gathered(*spot, found);
   last_margin_ = evidence_.margin;
-  const bool alone = !followed_ && conclusive(evidence_, verify_);  // never outvotes a track that still holds
+  // Alone it outvotes neither a track that still holds nor, at first, what the spots before it say.
+  const bool outvoted = followed_ || (!estimate_ && tracks_.spots() > 1 && !seconded(evidence_, verify_));
+  const bool alone = !outvoted && conclusive(evidence_, verify_);
   if (alone) {
     evidence_.best = evidence_.own;
     evidence_.best_estimate = evidence_.own_estimate;

@@ -21,6 +21,11 @@ double lead_needed(const Evidence& evidence, const VerifyOptions& options) {
   return evidence.rival_supports >= evidence.supports ? options.lead_over_fitting : options.lead_per_spot;
 }
 
+bool seconded(const Evidence& evidence, const VerifyOptions& options) {
+  return evidence.own && evidence.best && evidence.lead_per_spot >= lead_needed(evidence, options) &&
+         same_place(evidence.own->T_map_sensor(), evidence.best->T_map_sensor(), options.tracks.gate);
+}
+
 std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options) {
   const bool led =
       evidence.supports >= options.spots && evidence.lead_per_spot >= lead_needed(evidence, options);

@@ -49,6 +49,8 @@ struct Evidence {
 [[nodiscard]] double lead_needed(const Evidence& evidence, const VerifyOptions& options);
 /// Whether one spot decides alone.
 [[nodiscard]] bool conclusive(const Evidence& evidence, const VerifyOptions& options);
+/// Whether the spots so far put the device where this one alone does.
+[[nodiscard]] bool seconded(const Evidence& evidence, const VerifyOptions& options);
 /// Whether several spots decide: confirmed or corrected.
 [[nodiscard]] std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options);
 /// Whether a pose that was followed is still verified.

@@ -44,7 +44,7 @@ void Session::start_segment(std::uint32_t segment) {
   own_answers_.clear();
   estimate_.reset();
   weak_in_a_row_ = spots_since_search_ = 0;
-  followed_ = false;
+  followed_ = doubted_ = false;
 }
 
 void Session::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
@@ -81,7 +81,8 @@ Evidence Session::gathered(const Spot& spot, const std::vector<Hypothesis>& foun
   e.stayed = best.fits.back();
   e.supports = best.supports();
   e.lead_per_spot = tracks_.lead() / static_cast<double>(tracks_.spots());
-  if (tracks_.best_first().size() > 1) e.rival_supports = tracks_.best_first()[1].supports();
+  for (std::size_t i = 1; i < tracks_.best_first().size(); ++i)
+    e.rival_supports = std::max(e.rival_supports, tracks_.best_first()[i].supports());
   if (own_answers_.size() < 3) return e;
   const Verification v = verify({own_answers_[0], own_answers_[1], own_answers_[2]}, verify_.equality);
   const SpotPose newest{v.T_map_sensor[2], own_answers_[2].T_odom_sensor};
@@ -103,18 +104,20 @@ std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& sp
   if (own_answers_.size() > 3) own_answers_.pop_front();
   evidence_ = gathered(*spot, found);
   last_margin_ = evidence_.margin;
-  // Alone it outvotes neither a track that still holds nor, at first, what the spots before it say.
-  const bool outvoted = followed_ || (!estimate_ && tracks_.spots() > 1 && !seconded(evidence_, verify_));
-  const bool alone = !outvoted && conclusive(evidence_, verify_);
+  // Alone it outvotes neither a track that still holds nor what the spots before it say, unless they are of
+  // where the device was before somebody lifted it.
+  const bool heard = tracks_.spots() == 1 || (estimate_ && doubted_) || seconded(evidence_, verify_);
+  const bool alone = !followed_ && heard && conclusive(evidence_, verify_);
   if (alone) {
     evidence_.best = evidence_.own;
     evidence_.best_estimate = evidence_.own_estimate;
   }
   const auto why = alone ? std::optional(Reason::conclusive) : confirmed(evidence_, verify_);
-  if (!why) return why;
+  const bool elsewhere =
+      estimate_ && !same_place(evidence_.best_estimate.T_map_sensor, estimate_->T_map_sensor);
+  if (!why || (elsewhere && !followed_ && !doubted_)) return std::nullopt;
   // A track that holds has more behind it than this spot's own search; elsewhere, the search is right.
-  const bool known = followed_ && same_place(evidence_.best_estimate.T_map_sensor, estimate_->T_map_sensor);
-  if (!known) estimate_ = evidence_.best_estimate;
+  if (!followed_ || elsewhere) estimate_ = evidence_.best_estimate;
   T_odom_sensor_ = spot->T_odom_sensor();
   weak_in_a_row_ = 0;
   return why;
@@ -132,11 +135,10 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
     return conclude(SpotStatus::verified, *why, reply);
   }
   const bool few = tracks_.spots() < static_cast<std::size_t>(verify_.spots);
-  const bool led = evidence_.lead_per_spot >= lead_needed(evidence_, verify_);
   conclude(SpotStatus::provisional,
-           few   ? Reason::awaiting_spots
-           : led ? Reason::inconsistent
-                 : Reason::ambiguous,
+           few                       ? Reason::awaiting_spots
+           : led(evidence_, verify_) ? Reason::inconsistent
+                                     : Reason::ambiguous,
            reply);
 }
 
@@ -167,6 +169,7 @@ void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<
                               SpotReply* reply) {
   followed_ = follow(request, *spot, reply);
   weak_in_a_row_ = followed_ ? 0 : weak_in_a_row_ + 1;
+  doubted_ = contradicted(evidence_, verify_) || weak_in_a_row_ > verify_.patience;
   conclude(followed_ ? SpotStatus::verified : SpotStatus::provisional,
            followed_ ? Reason::confirmed : Reason::weak, reply);
   // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that

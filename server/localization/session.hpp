@@ -41,6 +41,7 @@ class Session {
   std::optional<PoseEstimate> estimate_;   ///< at the newest spot, once verified
   Pose T_odom_sensor_ = Pose::Identity();  ///< of that spot
   bool followed_ = false;                  ///< the newest spot bore the track out
+  bool doubted_ = false;  ///< lines of sight contradict the track, or it has been weak for long
   double last_margin_ = 0;
   Evidence evidence_;
   int weak_in_a_row_ = 0, spots_since_search_ = 0;

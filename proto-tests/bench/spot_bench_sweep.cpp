@@ -67,7 +67,7 @@ void sweep_searching(const std::vector<EvidenceRow>& rows) {
                 "lead per spot, share of device points on seen surfaces, share of ceiling points that agree");
   const VerifyOptions standard;
   for (const double lead : {0.0, 0.08, 0.2})
-    for (const double agree : {0.12, 0.3, 0.4, 0.5})
+    for (const double agree : {0.12, 0.3, 0.35, 0.45})
       for (const double map_agree : {0.93, 0.96, 0.98}) {
         VerifyOptions o;
         o.lead_per_spot = lead;

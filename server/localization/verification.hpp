@@ -20,7 +20,7 @@ struct VerifyOptions {
   double conclusive_overlap = 0.99;  ///< ... and of those judged, how many agree
   double confirmed_map_agree =
       0.98;                       ///< of several spots: least share of agreeing ceiling points, at first ...
-  double confirmed_agree = 0.12;  ///< ... least share of device points on seen surfaces, or a twin of the place
+  double confirmed_agree = 0.35;  ///< ... least share of device points on seen surfaces, or a twin of the place
                                   ///< may lie where the ceiling does not look ...
   double verified_map_agree = 0.96;  ///< ... and once they are believed
   double verified_overlap = 0.98;    ///< least share of agreeing among judged device points

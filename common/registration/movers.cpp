@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace liloc {
 namespace {
@@ -28,15 +29,28 @@ Movers::Movers(const Cloud& moving_map, double reach_m) {
     if (p.allFinite()) stamp((p - origin_).array(), reach);
 }
 
+/// A ball, row by row: the cells whose centres lie within reach.
 void Movers::stamp(const Eigen::Array3f& q_m, float reach_m) {
-  const Eigen::Array3i lo = ((q_m - reach_m) * inverse_).floor().cast<int>().max(0);
-  const Eigen::Array3i hi = ((q_m + reach_m) * inverse_).cast<int>().min(size_.array() - 1);
-  for (int z = lo.z(); z <= hi.z(); ++z)
-    for (int y = lo.y(); y <= hi.y(); ++y)
-      for (int x = lo.x(); x <= hi.x(); ++x) {
-        const Eigen::Array3f centre = (Eigen::Array3f(x, y, z) + 0.5F) / inverse_;
-        if ((centre - q_m).square().sum() <= reach_m * reach_m) cells_[index({x, y, z})] = 1;
-      }
+  const Eigen::Array3f q = q_m * inverse_ - 0.5F;  // in cells, of centres
+  const float reach = reach_m * inverse_;
+  const auto rows_of = [&](float middle, float half, int size) {
+    return std::pair{std::max(0, static_cast<int>(std::ceil(middle - half))),
+                     std::min(size - 1, static_cast<int>(std::floor(middle + half)))};
+  };
+  const auto [z_lo, z_hi] = rows_of(q.z(), reach, size_.z());
+  for (int z = z_lo; z <= z_hi; ++z) {
+    const float off_z = static_cast<float>(z) - q.z(),
+                disk = std::sqrt(std::max(0.0F, reach * reach - off_z * off_z));
+    const auto [y_lo, y_hi] = rows_of(q.y(), disk, size_.y());
+    for (int y = y_lo; y <= y_hi; ++y) {
+      const float off_y = static_cast<float>(y) - q.y();
+      const auto [x_lo, x_hi] =
+          rows_of(q.x(), std::sqrt(std::max(0.0F, disk * disk - off_y * off_y)), size_.x());
+      if (x_lo <= x_hi)
+        std::fill_n(cells_.begin() + static_cast<std::ptrdiff_t>(index({x_lo, y, z})), x_hi - x_lo + 1,
+                    std::uint8_t{1});
+    }
+  }
 }
 
 }  // namespace liloc

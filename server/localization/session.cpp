@@ -154,10 +154,14 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
   const PosePrior prior{predicted, std::max(estimate_->sd_rad(), verify_.locked_sd_rad),
                         std::max(estimate_->sd_m(), verify_.locked_sd_m), verify_.prior_residual_sd_m};
   Hypothesis here = refine_and_judge(spot.problem(), predicted, &prior);
-  if (!is_clean(here)) here = settle(spot.problem(), predicted, std::move(here));
   evidence_ = {};
   evidence_.best = here;
   evidence_.stayed = same_place(here.T_map_sensor(), predicted, verify_.tracks.gate);
+  if (!evidence_.stayed || contradicted(evidence_, verify_)) {
+    here = settle(spot.problem(), predicted, std::move(here));
+    evidence_.best = here;
+    evidence_.stayed = same_place(here.T_map_sensor(), predicted, verify_.tracks.gate);
+  }
   const bool good = follows(evidence_, verify_);
   if (good) estimate_ = fused(*estimate_, estimate_of(spot, here));
   evidence_.best_estimate = *estimate_;

@@ -39,7 +39,8 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
     }
   if (!here) {
     here = refine_and_judge(spot.problem(), predicted);
-    if (!is_clean(*here)) here = settle(spot.problem(), predicted, std::move(*here));
+    if (!same_place(here->T_map_sensor(), predicted, options_.gate) || !liloc::fits(*here, options_))
+      here = settle(spot.problem(), predicted, std::move(*here));
   }
   const bool stayed = same_place(here->T_map_sensor(), predicted, options_.gate);
   if (stayed)

@@ -1,9 +1,5 @@
 #include "client/src/engine.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "client/src/byte_budget.hpp"
 #include "client/src/external_odometry.hpp"
 #include "client/src/image_thinning.hpp"
 #include "client/src/informativeness.hpp"
@@ -11,23 +7,16 @@
 #include "client/src/map_link.hpp"
 #include "client/src/odometry.hpp"
 #include "client/src/points_view.hpp"
+#include "client/src/request_maker.hpp"
 #include "client/src/request_schedule.hpp"
-#include "client/src/submap.hpp"
 #include "common/base/log.hpp"
 #include "common/geometry/depth.hpp"
-#include "common/geometry/voxel.hpp"
 
 namespace liloc {
 namespace {
 
 constexpr int kSilentIntervals = 3;
-constexpr std::size_t kFewestSurfels = 60;    // a frame with fewer cannot be matched
-constexpr std::size_t kMostLocalPoses = 250;  // a message holds 256; older ones of a long silence are left out
-constexpr std::size_t kLpcPoints = 4000;      // 6 to 7 kB
-constexpr StampNs kSubmapAge =
-    from_ms(10'000);                         // since a surface was seen; odometry drifts by millimetres in that
-constexpr std::size_t kSubmapPoints = 2000;  // about 3 kB
-constexpr double kOdomSdM = 0.01, kOdomSdRad = 0.005, kOdomSdShare = 0.01;  // floor, and share of path and turn
+constexpr std::size_t kFewestSurfels = 60;  // a frame with fewer cannot be matched
 
 OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
   OdometryOptions options;
@@ -66,6 +55,7 @@ struct Engine::Impl {
         thinning(thinning_for(options.camera)),
         odometry(odometry_options(options, thinning)),
         schedule(schedule_options(options)),
+        requests(options),
         link(kSilentIntervals * options.interval_ns) {
     if (options.T_imu_sensor) imu.emplace(ImuTrackOptions{.still_seconds = options.still_seconds});
     if (options.local == LocalMethod::external)
@@ -74,18 +64,15 @@ struct Engine::Impl {
       log::warning("local registration without an IMU: the cloud method is used instead");
   }
 
-  [[nodiscard]] DepthOptions depth_options() const {
-    return {.min_range_m = options.min_range_m, .max_range_m = options.max_range_m};
-  }
   [[nodiscard]] Status check(const DepthImage& image) const;
   /// `points`: within the view, where the frame came as a cloud.
   [[nodiscard]] Result<FrameResult> add(const DepthImage& image, const Cloud* points);
   [[nodiscard]] Result<Placed> place(const DepthImage& image, const Cloud* points, const FrameSpread& spread);
-  void note_motion(const OdometryStep& step);
-  void ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed);
-  void add_submap(SpotRequest& r) const;
-  [[nodiscard]] Result<SpotRequest> make_request(const DepthImage& image, const Cloud* points,
-                                                 const OdometryStep& step);
+  /// What the frame shows: `points`, or what `camera` measured.
+  [[nodiscard]] Result<Cloud> cloud_of(const DepthImage& image, const Camera& camera,
+                                       const Cloud* points) const;
+  void note_motion(StampNs stamp_ns, const Placed& placed);
+  void ask_if_due(const DepthImage& image, const Cloud* points, bool informative);
 
   EngineOptions options;
   int thinning;
@@ -95,14 +82,11 @@ struct Engine::Impl {
   Odometry odometry;
   InputHealth inputs;
   RequestSchedule schedule;
+  RequestMaker requests;
   MapLink link;
   StampNs last_ns = 0;
   bool started = false;
-  std::uint64_t next_seq = 1;
   std::uint32_t segment = 0;
-  std::vector<LocalPose> local_poses;  ///< since the last request
-  Pose T_odom_last = Pose::Identity();
-  double path_m = 0, turned_rad = 0;  ///< since the last request
   std::optional<SpotRequest> request;
   std::vector<std::uint64_t> unanswered;
 };
@@ -120,60 +104,16 @@ Status Engine::Impl::check(const DepthImage& image) const {
   return {};
 }
 
-void Engine::Impl::note_motion(const OdometryStep& step) {
-  if (step.segment != segment) {  // poses of the old segment say nothing about the new one
-    local_poses.clear();
-    path_m = turned_rad = 0;
-    segment = step.segment;
-    schedule.search_begins();
-  } else if (started) {
-    path_m += distance_m(step.T_odom_sensor, T_odom_last);
-    turned_rad += angle_between_rad(step.T_odom_sensor, T_odom_last);
-  }
-  T_odom_last = step.T_odom_sensor;
+Result<Cloud> Engine::Impl::cloud_of(const DepthImage& image, const Camera& camera, const Cloud* points) const {
+  if (points != nullptr) return *points;
+  return depth_to_cloud(image, camera,
+                        {.min_range_m = options.min_range_m, .max_range_m = options.max_range_m});
 }
 
-void Engine::Impl::add_submap(SpotRequest& r) const {
-  const Cloud standing = odometry.map().standing(r.stamp_ns - kSubmapAge, r.stamp_ns);
-  const auto thinned = [&](std::size_t most) {
-    Cloud extra = outside_view(standing, r.T_odom_sensor, r.view, most);
-    return extra.size() < kFewestSurfels ? Cloud{} : extra;
-  };
-  const std::size_t left = options.request_bytes - r.lpc.bytes.size();
-  auto extra = encode_within(left, kSubmapPoints, 2 * options.voxel_size_m, thinned);
-  if (extra) r.extra = std::move(*extra);  // otherwise the frame says it all
-}
-
-Result<SpotRequest> Engine::Impl::make_request(const DepthImage& image, const Cloud* points,
-                                               const OdometryStep& step) {
-  auto cloud =
-      points != nullptr ? Result<Cloud>(*points) : depth_to_cloud(image, options.camera, depth_options());
-  if (!cloud) return tl::unexpected(cloud.error());
-  const auto thinned = [&](std::size_t most) { return voxel_downsample(*cloud, options.voxel_size_m, most); };
-  auto lpc = encode_within(options.request_bytes, kLpcPoints, options.voxel_size_m, thinned);
-  if (!lpc) return tl::unexpected(lpc.error());
-  SpotRequest r;
-  r.client_id = options.client_id;
-  r.seq = next_seq++;
-  r.stamp_ns = image.stamp_ns;
-  r.odom_segment = step.segment;
-  r.T_odom_sensor = step.T_odom_sensor;
-  r.odom_sd_rad = std::hypot(kOdomSdRad + kOdomSdShare * turned_rad, step.sd_rad);
-  r.odom_sd_m = std::hypot(kOdomSdM + kOdomSdShare * path_m, step.sd_m);
-  r.local_poses = std::exchange(local_poses, {});
-  r.lpc = std::move(*lpc);
-  r.voxel_size_m = options.voxel_size_m;
-  r.view = {options.camera, options.min_range_m, options.max_range_m};
-  if (imu) {
-    const auto up_imu = imu->up(image.stamp_ns);
-    if (up_imu) r.up_sensor = options.T_imu_sensor->linear().transpose() * *up_imu;
-    r.up_sd_rad = imu->up_sd_rad();
-  }
-  r.cold = options.cold;
-  if (options.submap && !options.cold && !external) add_submap(r);
-  path_m = turned_rad = 0;
-  if (external) external->anchor();
-  return r;
+void Engine::Impl::note_motion(StampNs stamp_ns, const Placed& placed) {
+  if (placed.step.segment != segment) schedule.search_begins();
+  segment = placed.step.segment;
+  if (!external || external->placed()) requests.travelled(stamp_ns, placed.step, placed.informative);
 }
 
 Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points, const FrameSpread& spread) {
@@ -184,8 +124,7 @@ Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points,
     return placed;
   }
   const DepthImage small = thinned(image, thinning);
-  auto cloud = points != nullptr ? Result<Cloud>(*points)
-                                 : depth_to_cloud(small, thinned(options.camera, thinning), depth_options());
+  const auto cloud = cloud_of(small, thinned(options.camera, thinning), points);
   if (!cloud) return tl::unexpected(cloud.error());
   const std::vector<Surfel> surfels =
       extract_surfels(*cloud, Eigen::Vector3f::Zero(), {.size_m = 2 * options.voxel_size_m});
@@ -199,20 +138,23 @@ Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points,
   return placed;
 }
 
-void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed) {
+void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, bool informative) {
   for (const std::uint64_t seq : schedule.take_unanswered(image.stamp_ns)) {
     unanswered.push_back(seq);
     log::warning("{}: request {} was not answered within {:.1f} s", options.client_id, seq,
                  to_seconds(options.reply_timeout_ns));
   }
-  if (!schedule.due(image.stamp_ns, placed.informative)) return;
-  auto made = make_request(image, points, placed.step);
-  if (made) {
-    schedule.sent(made->seq, made->stamp_ns);
-    request = std::move(*made);
-  } else {
+  if (!schedule.due(image.stamp_ns, informative)) return;
+  auto made = cloud_of(image, options.camera, points).and_then([&](const Cloud& cloud_sensor) {
+    return requests.make(cloud_sensor, odometry.map(), imu ? &*imu : nullptr);
+  });
+  if (!made) {
     log::warning("{}: frame {} is not sent: {}", options.client_id, image.stamp_ns, made.error().message);
+    return;
   }
+  if (external) external->anchor();
+  schedule.sent(made->seq, made->stamp_ns);
+  request = std::move(*made);
 }
 
 Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* points) {
@@ -225,10 +167,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   const auto placed = place(image, points, spread);
   if (!placed) return tl::unexpected(placed.error());
   const OdometryStep& step = placed->step;
-  note_motion(step);
-  if (local_poses.size() >= kMostLocalPoses) local_poses.erase(local_poses.begin());
-  if (!external || external->placed())
-    local_poses.push_back({image.stamp_ns, step.T_odom_sensor, placed->informative});
+  note_motion(image.stamp_ns, *placed);
   started = true;
   last_ns = image.stamp_ns;
 
@@ -244,7 +183,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   inputs.note(spread.fault, step.residual_m, step.strain);
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   frame.latency_ms = watch.elapsed_ms();
-  ask_if_due(image, points, *placed);
+  ask_if_due(image, points, placed->informative);
   return frame;
 }
 

@@ -1,0 +1,96 @@
+#include "client/src/request_maker.hpp"
+
+#include <gtest/gtest.h>
+
+#include "client/src/tests/walk.hpp"
+#include "common/geometry/depth.hpp"
+
+namespace liloc {
+namespace {
+
+using namespace test;
+
+/// A straight path along x, 0.1 m a frame, turning by 0.02 rad a frame.
+OdometryStep step_of(int frame, std::uint32_t segment = 0) {
+  OdometryStep step;
+  step.T_odom_sensor =
+      Eigen::Translation3d(50 + 0.1 * frame, 0, 0) * Eigen::AngleAxisd(0.02 * frame, Eigen::Vector3d::UnitZ());
+  step.segment = segment;
+  return step;
+}
+
+class Requests : public testing::Test {
+ protected:
+  void travel(int from, int to, std::uint32_t segment = 0) {
+    for (int i = from; i < to; ++i) maker.travelled(stamp_of(i), step_of(i, segment), i % 2 == 0);
+  }
+  SpotRequest make() {
+    const auto request = maker.make(cloud, surroundings, nullptr);
+    EXPECT_TRUE(request) << request.error().message;
+    return request.value_or(SpotRequest{});
+  }
+  const Cloud cloud = *depth_to_cloud(frame_at(scene::furnished_room(1), 0), scene::small_camera());
+  const LocalMap surroundings{{}};
+  RequestMaker maker{engine_options()};
+};
+
+TEST_F(Requests, TellOfThePathSinceTheLastOne) {
+  travel(0, 5);
+  const SpotRequest first = make();
+  travel(5, 7);
+  const SpotRequest second = make();
+  ASSERT_EQ(first.local_poses.size(), 5U);
+  ASSERT_EQ(second.local_poses.size(), 2U);
+  EXPECT_EQ(second.local_poses.front().stamp_ns, stamp_of(5));
+  EXPECT_FALSE(second.local_poses.front().informative);
+  EXPECT_TRUE(second.local_poses.back().informative);
+  EXPECT_EQ(second.stamp_ns, stamp_of(6));
+  EXPECT_EQ(second.seq, first.seq + 1);
+  EXPECT_TRUE(second.T_odom_sensor.isApprox(step_of(6).T_odom_sensor));
+}
+
+TEST_F(Requests, AreLessSureTheFartherTheDeviceWent) {
+  travel(0, 1);
+  const SpotRequest here = make();  // 50 m from odom's origin, which is no path
+  travel(1, 2);
+  const SpotRequest near = make();
+  travel(2, 42);
+  const SpotRequest far = make();
+  travel(42, 43);
+  const SpotRequest again = make();
+  EXPECT_LT(here.odom_sd_m, near.odom_sd_m);
+  EXPECT_NEAR(near.odom_sd_m - here.odom_sd_m, 0.01 * 0.1, 1e-9);
+  EXPECT_NEAR(far.odom_sd_m - here.odom_sd_m, 0.01 * 4, 1e-9);
+  EXPECT_NEAR(far.odom_sd_rad - here.odom_sd_rad, 0.01 * 0.8, 1e-9);
+  EXPECT_NEAR(again.odom_sd_m, near.odom_sd_m, 1e-12);
+}
+
+TEST_F(Requests, SayNothingOfASegmentThatBroke) {
+  travel(0, 20);
+  travel(20, 21, 1);
+  const SpotRequest request = make();
+  EXPECT_EQ(request.odom_segment, 1U);
+  EXPECT_EQ(request.local_poses.size(), 1U);
+  travel(21, 22, 1);
+  EXPECT_LT(request.odom_sd_m, make().odom_sd_m);  // nor was the step between the segments travelled
+}
+
+TEST_F(Requests, HoldTheNewestOfALongSilence) {
+  travel(0, 400);
+  const SpotRequest request = make();
+  EXPECT_EQ(request.local_poses.size(), 250U);
+  EXPECT_EQ(request.local_poses.back().stamp_ns, stamp_of(399));
+  EXPECT_EQ(request.local_poses.front().stamp_ns, stamp_of(150));
+}
+
+TEST_F(Requests, AFrameThatCannotBeSentIsStillTravelled) {
+  travel(0, 3);
+  EXPECT_FALSE(maker.make(Cloud{}, surroundings, nullptr));
+  travel(3, 4);
+  const SpotRequest request = make();
+  EXPECT_EQ(request.seq, 1U);
+  EXPECT_EQ(request.local_poses.size(), 4U);
+}
+
+}  // namespace
+}  // namespace liloc

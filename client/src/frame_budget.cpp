@@ -4,6 +4,8 @@
 #include <ctime>
 #include <vector>
 
+#include "common/base/quantile.hpp"
+
 namespace liloc {
 namespace {
 
@@ -14,11 +16,8 @@ constexpr double kSlack = 0.9;  // frames do not come at even distances
 
 double FrameBudget::interval_ms() const {
   if (needed_ms_.size() < kFewest) return 0;
-  std::vector<double> needed(needed_ms_.begin(),
-                             needed_ms_.end());  // the median: one search by features is no trend
-  const auto middle = needed.begin() + static_cast<std::ptrdiff_t>(needed.size() / 2);
-  std::nth_element(needed.begin(), middle, needed.end());
-  return *middle;
+  return median(
+      std::vector<double>(needed_ms_.begin(), needed_ms_.end()));  // one search by features is no trend
 }
 
 bool FrameBudget::admit(StampNs stamp_ns) {

@@ -4,16 +4,12 @@
 #include <cmath>
 #include <vector>
 
+#include "common/base/quantile.hpp"
+
 namespace liloc {
 namespace {
 
 constexpr int kStep = 4;  // every fourth pixel in both axes: 1200 of 320x240 give the spread to 1 %
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 FrameSpread measure(const DepthImage& image, const Camera& camera, double min_range_m, double max_range_m,
                     double near_m) {
@@ -60,7 +56,7 @@ const char* name_of(FrameFault fault) {
 
 FrameFault Informativeness::compare(double sd_m) const {
   if (static_cast<int>(recent_.size()) < 3) return FrameFault::none;
-  const double usual = median({recent_.begin(), recent_.end()});
+  const double usual = median(std::vector<double>(recent_.begin(), recent_.end()));
   std::vector<double> off;
   for (const double s : recent_) off.push_back(std::abs(s - usual));
   const double limit = std::max({options_.sudden_share * usual, options_.sudden_m,

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/base/quantile.hpp"
+
 namespace liloc {
 namespace {
 
@@ -27,9 +29,7 @@ void InputHealth::note(FrameFault fault, double residual_m, double strain) {
 double InputHealth::median_of(double Match::*figure) const {
   std::vector<double> values;
   for (const Match& match : matches_) values.push_back(match.*figure);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median(std::move(values));
 }
 
 std::string InputHealth::problem() const {

@@ -4,8 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "client/src/clock_estimator.hpp"
-#include "client/src/engine.hpp"
+#include "client/src/session_report.hpp"
 
 namespace liloc {
 
@@ -21,20 +20,6 @@ struct SessionCallbacks {
   std::function<Status(const SpotRequest&)> send;
   /// After each frame; on the registration thread.
   std::function<void(const FrameResult&, Tracking)> on_frame;
-};
-
-struct SessionStats {
-  std::uint64_t frames = 0, frames_dropped = 0, frames_refused = 0, frames_uninformative = 0, imu_refused = 0;
-  std::uint64_t requests = 0, requests_unsent = 0, requests_unanswered = 0;
-  std::uint64_t replies = 0, replies_verified = 0, replies_refused = 0;
-  double frame_ms_median = 0, frame_ms_p99 = 0;
-  std::uint64_t frames_skipped = 0;  ///< left out to stay within the budget
-  std::uint64_t odometry_refused = 0;
-  double cpu_s = 0;  ///< of the registration
-  std::string problem;
-  std::optional<ClockOffset> clock;  ///< of the device against the ceiling
-  std::uint64_t clock_jumps = 0;
-  double localized_s = 0;  ///< of the device's time, with a global pose
 };
 
 /// All calls are safe from any thread; none waits for the network.

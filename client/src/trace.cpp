@@ -91,9 +91,10 @@ void TraceWriter::write_spot(const SpotReply& reply) {
   spots_ << std::endl;
 }
 
-void TraceWriter::on_reply(const SpotReply& reply, const SpotRequest& request) {
-  pending_.erase(request.seq);
-  if (!timed_out_.contains(request.seq)) write_spot(reply);
+void TraceWriter::on_reply(const SpotReply& reply) {
+  const bool has_row = timed_out_.erase(reply.seq) > 0;
+  if (!has_row && pending_.erase(reply.seq) == 0) return;
+  if (!has_row) write_spot(reply);
   if (!reply.verified() || !reply.T_map_odom) return;
   auto& known = corrections_[reply.odom_segment];
   const auto after = std::upper_bound(known.begin(), known.end(), reply.stamp_ns,

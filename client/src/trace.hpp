@@ -22,7 +22,8 @@ class TraceWriter {
   void on_request(const SpotRequest& request);
   /// Its row with the reason no_answer now; a later reply gets no row.
   void on_timeout(std::uint64_t seq);
-  void on_reply(const SpotReply& reply, const SpotRequest& request);
+  /// Its row, and what it corrects. One that answers none of the requests, or one a second time, is ignored.
+  void on_reply(const SpotReply& reply);
   /// Writes what is still open and trajectory.tum: each located frame with the corrections of the verified
   /// spots before and after it, mixed by their distance in time.
   [[nodiscard]] Status close();

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/base/quantile.hpp"
 #include "common/geometry/voxel.hpp"
 #include "common/registration/normals.hpp"
 #include "common/registration/panorama.hpp"
@@ -32,13 +33,12 @@ Status near_origin(std::string_view name, const Cloud& cloud, double voxel_size_
   for (const Eigen::Vector3f& p : cloud.points)
     if (p.allFinite()) distances_m.push_back(p.cwiseAbs().maxCoeff());
   if (distances_m.empty()) return {};
-  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
-  std::nth_element(distances_m.begin(), middle, distances_m.end());
+  const double median_m = median(std::move(distances_m));
   const double farthest_m = 0.1 * voxel_size_m / std::numeric_limits<float>::epsilon();
-  if (*middle < farthest_m) return {};
+  if (median_m < farthest_m) return {};
   return fail(
       "{} lies {:.3g} m from its origin, where floats are too coarse for a voxel of {} m; move it there", name,
-      *middle, voxel_size_m);
+      median_m, voxel_size_m);
 }
 
 /// The free space that each of the two clouds shows, where it was seen from its origin.

@@ -141,7 +141,7 @@ class Lockstep {
         cloud_.prepare();  // which the server does beside its requests
         const SpotReply reply = localizer_.locate(request);
         device->engine.add_reply(reply);
-        device->trace.on_reply(reply, request);
+        device->trace.on_reply(reply);
         device->held.pop_front();
       }
   }

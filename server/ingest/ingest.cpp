@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/log.hpp"
+#include "common/base/quantile.hpp"
 #include "common/base/stamp_clock.hpp"
 #include "common/wire/sensors.hpp"
 #include "server/ingest/lidar_monitor.hpp"
@@ -147,9 +148,7 @@ StampNs Ingest::ceiling_now(Clock::time_point at) const {
       if (const auto now = lidar->clock.now(at)) clocks.push_back(*now);
   }
   if (clocks.empty()) return 0;
-  const auto middle = clocks.begin() + static_cast<std::ptrdiff_t>(clocks.size() / 2);
-  std::nth_element(clocks.begin(), middle, clocks.end());
-  return *middle;
+  return median(std::move(clocks));
 }
 
 bool Ingest::seen(StampNs stamp_ns) const {

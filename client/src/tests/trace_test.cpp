@@ -58,6 +58,13 @@ class Trace : public testing::Test {
     return r;
   }
 
+  /// A verified answer that shifts by as many metres as seconds have passed.
+  void ask_and_answer(int second, bool late = false) {
+    trace_.on_request(request(1, second));
+    if (late) trace_.on_timeout(1);
+    trace_.on_reply(verified(request(1, second), second));
+  }
+
   std::filesystem::path folder_;
   TraceWriter trace_;
 };
@@ -84,10 +91,12 @@ TEST_F(Trace, RowsAreThereBeforeTheEnd) {
 TEST_F(Trace, EveryRequestHasOneRow) {
   const auto answered = request(1, 1), silent = request(2, 2), late = request(3, 3), refused = request(4, 4);
   for (const auto& r : {answered, silent, late, refused}) trace_.on_request(r);
-  trace_.on_reply(verified(answered, 4), answered);
+  trace_.on_reply(verified(answered, 4));
+  trace_.on_reply(verified(answered, 4));       // once more
+  trace_.on_reply(verified(request(9, 9), 4));  // nobody asked
   trace_.on_timeout(3);
-  trace_.on_reply(verified(late, 4), late);
-  trace_.on_reply(refusal(refused, Reason::no_gpc, "none"), refused);
+  trace_.on_reply(verified(late, 4));
+  trace_.on_reply(refusal(refused, Reason::no_gpc, "none"));
   ASSERT_TRUE(trace_.close());
   const auto rows = lines("spots.csv");
   ASSERT_EQ(rows.size(), 5U);
@@ -103,7 +112,7 @@ TEST_F(Trace, EveryRequestHasOneRow) {
 TEST_F(Trace, TheTrajectoryMixesTheCorrectionsAroundAFrame) {
   for (int s = 1; s <= 6; ++s) {
     ASSERT_TRUE(trace_.on_frame(frame(s, s >= 2 ? std::optional<double>(s) : std::nullopt)));
-    if (s == 2 || s == 4) trace_.on_reply(verified(request(1, s), s), request(1, s));
+    if (s == 2 || s == 4) ask_and_answer(s);
   }
   ASSERT_TRUE(trace_.close());
   std::vector<double> y;
@@ -114,8 +123,15 @@ TEST_F(Trace, TheTrajectoryMixesTheCorrectionsAroundAFrame) {
   EXPECT_THAT(y, ElementsAre(2, 3, 4, 4, 4));  // frames 2..6: at, between, at, after, after
 }
 
+TEST_F(Trace, ALateAnswerCorrectsAsWell) {
+  ASSERT_TRUE(trace_.on_frame(frame(3, 3.0)));
+  ask_and_answer(3, true);
+  ASSERT_TRUE(trace_.close());
+  EXPECT_THAT(lines("trajectory.tum").at(1), StartsWith("3.000000005 3.000000 3.000000 "));
+}
+
 TEST_F(Trace, ASegmentWithoutAnAnswerKeepsItsBridge) {
-  trace_.on_reply(verified(request(1, 1), 5), request(1, 1));
+  ask_and_answer(1);
   ASSERT_TRUE(trace_.on_frame(frame(2, 42.0, 1)));
   ASSERT_TRUE(trace_.close());
   EXPECT_THAT(lines("trajectory.tum").at(1), StartsWith("2.000000005 42.000000 "));

@@ -82,16 +82,23 @@ void take_reply(const liloc_reply* reply, void* user) {
   answers.text = reply->text;
 }
 
-/// Feeds the walk, again and again at one place, until the newest pose is global.
+/// Feeds one view again and again until the newest pose is global; a frame waits for the answer to the one
+/// before, so that no computer is too slow for the stamps.
 bool located(liloc_client* client, liloc_pose_update& update) {
   std::vector<std::uint16_t> units(FRAME_WIDTH * FRAME_HEIGHT);
   render_frame(0, units.data());
+  liloc_stats stats{};
   for (int i = 0; i < 1000; ++i) {
     EXPECT_EQ(liloc_client_push_depth(client, units.data(), FRAME_WIDTH, FRAME_HEIGHT, frame_stamp_ns(i)),
               LILOC_OK);
-    std::this_thread::sleep_for(10ms);
-    EXPECT_EQ(liloc_client_newest(client, &update, sizeof update), LILOC_OK);
+    EXPECT_TRUE(within(20s, [&] {
+      EXPECT_EQ(liloc_client_newest(client, &update, sizeof update), LILOC_OK);
+      EXPECT_EQ(liloc_client_stats(client, &stats, sizeof stats), LILOC_OK);
+      const bool answered = stats.requests == stats.requests_unsent + stats.requests_unanswered + stats.replies;
+      return update.stamp_ns == frame_stamp_ns(i) && answered;
+    }));
     if (update.has_map) return true;
+    if (stats.replies == 0) std::this_thread::sleep_for(10ms);  // the server is not found yet
   }
   return false;
 }

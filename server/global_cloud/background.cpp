@@ -6,6 +6,9 @@
 namespace liloc {
 namespace {
 
+constexpr int kProven = 4;   // frames in a surface that speaks for its neighbours
+constexpr int kCompany = 2;  // neighbours that move as well, or it is noise
+
 bool lasted(std::uint32_t since_ms, std::uint32_t now_ms, double seconds) {
   return static_cast<double>(now_ms - since_ms) >= 1e3 * seconds;
 }
@@ -17,7 +20,12 @@ Background::Background(const Camera& camera, const BackgroundOptions& options)
       width_(camera.width),
       height_(camera.height),
       scale_m_(camera.depth_scale_m),
-      pixels_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)) {}
+      pixels_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)),
+      kinds_(pixels_.size(), Kind::nothing) {}
+
+float Background::tolerance_of(float units) const {
+  return static_cast<float>(options_.tolerance_m / scale_m_) + 0.01F * units;
+}
 
 void Background::replace(Pixel* pixel, float units) {
   pixel->surface = units;
@@ -26,27 +34,47 @@ void Background::replace(Pixel* pixel, float units) {
   ++replaced_;
 }
 
-bool Background::moving(Pixel* pixel, float units, std::uint32_t now_ms) {
-  const float tolerance = static_cast<float>(options_.tolerance_m / scale_m_) + 0.01F * units;
+template <class Visit>
+void Background::for_each_around(std::size_t i, const Visit& visit) const {
+  const int u = static_cast<int>(i) % width_, v = static_cast<int>(i) / width_;
+  for (int y = std::max(0, v - 1); y <= std::min(height_ - 1, v + 1); ++y)
+    for (int x = std::max(0, u - 1); x <= std::min(width_ - 1, u + 1); ++x)
+      if (x != u || y != v)
+        visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+}
+
+bool Background::continues_a_neighbour(std::size_t i, float units) const {
+  bool continues = false;
+  for_each_around(i, [&](std::size_t j) {
+    const Pixel& p = pixels_[j];
+    continues |= p.surface > 0 && p.averaged >= kProven && !p.missing &&
+                 std::abs(p.surface - units) <= tolerance_of(units);
+  });
+  return continues;
+}
+
+Background::Kind Background::learn(std::size_t i, float units, std::uint32_t now_ms) {
+  Pixel* pixel = &pixels_[i];
   const float nearer = pixel->surface - units;
   pixel->missing = false;
-  if (pixel->surface > 0 && std::abs(nearer) <= tolerance) {
+  if (pixel->surface > 0 && std::abs(nearer) <= tolerance_of(units)) {
     if (pixel->averaged < options_.most_averaged) ++pixel->averaged;
     pixel->surface -= nearer / static_cast<float>(pixel->averaged);
     pixel->candidates = 0;
-    return false;
+    return Kind::still;
   }
-  if (pixel->candidates == 0 || std::abs(pixel->candidate - units) > tolerance) {
+  if (pixel->candidates == 0 || std::abs(pixel->candidate - units) > tolerance_of(units)) {
     pixel->candidate = units;
     pixel->candidate_since_ms = now_ms;
     pixel->candidates = 0;
   }
   if (pixel->candidates < 255) ++pixel->candidates;
-  const bool gone = pixel->surface > 0 && nearer < 0 && pixel->candidates >= 2;
+  const bool farther = pixel->surface > 0 && nearer < 0, gone = farther && pixel->candidates >= 2;
   const bool settled = lasted(pixel->candidate_since_ms, now_ms, options_.settle_seconds);
-  if (!gone && !settled) return true;
+  const bool more = pixel->surface == 0 && continues_a_neighbour(i, units);
+  if (!gone && !settled && !more) return farther ? Kind::farther : Kind::nearer;
   replace(pixel, units);
-  return false;
+  return Kind::still;
 }
 
 void Background::miss(Pixel* pixel, std::uint32_t now_ms) {
@@ -56,26 +84,36 @@ void Background::miss(Pixel* pixel, std::uint32_t now_ms) {
   if (lasted(pixel->missing_since_ms, now_ms, options_.forget_seconds)) replace(pixel, 0);
 }
 
-DepthImage Background::learn(const DepthImage& image) {
+Layers Background::learn(const DepthImage& image) {
   const bool first = frames_ == 0;
   last_ns_ = image.stamp_ns;
   ++frames_;
   const auto now_ms = static_cast<std::uint32_t>(image.stamp_ns / 1'000'000);
-  DepthImage still = image;
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    kinds_[i] = Kind::nothing;
     if (image.units[i] == 0) {
       miss(&pixels_[i], now_ms);
       continue;
     }
     if (first) replace(&pixels_[i], image.units[i]);
-    if (!moving(&pixels_[i], image.units[i], now_ms)) continue;
-    const int u = static_cast<int>(i) % width_, v = static_cast<int>(i) / width_;
-    for (int y = std::max(0, v - 1); y <= std::min(height_ - 1, v + 1); ++y)
-      for (int x = std::max(0, u - 1); x <= std::min(width_ - 1, u + 1); ++x)
-        still.units[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                    static_cast<std::size_t>(x)] = 0;
+    kinds_[i] = learn(i, image.units[i], now_ms);
   }
-  return still;
+  return separated(image);
+}
+
+Layers Background::separated(const DepthImage& image) const {
+  Layers layers{image, {image.stamp_ns, width_, height_, std::vector<std::uint16_t>(pixels_.size(), 0)}};
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    if (kinds_[i] == Kind::nothing || kinds_[i] == Kind::still) continue;
+    layers.still.units[i] = 0;
+    if (kinds_[i] == Kind::farther) continue;
+    int alike = 0;
+    for_each_around(i, [&](std::size_t j) { alike += kinds_[j] == Kind::nearer; });
+    if (alike < kCompany) continue;
+    layers.moving.units[i] = image.units[i];
+    for_each_around(i, [&](std::size_t j) { layers.still.units[j] = 0; });
+  }
+  return layers;
 }
 
 Change Background::change() const {

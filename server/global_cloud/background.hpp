@@ -17,17 +17,23 @@ struct BackgroundOptions {
 
 enum class Change { none, small, large };
 
+/// A frame taken apart. Where somebody's outline mixes with what is behind, and where a pixel stands alone
+/// with what it says, it is in neither (0).
+struct Layers {
+  DepthImage still, moving;
+};
+
 /// The room before one ceiling LiDAR without what moves. The LiDAR stands still, so each pixel has a history of
 /// its own: a return nearer than its surface, or where there was none, belongs to something that came by, until
-/// it has stood there for a while; two farther ones show that the old surface is gone. Surfaces are running
-/// means, so their noise shrinks with time. Not thread-safe.
+/// it has stood there for a while; two farther ones show that the old surface is gone. A return that continues
+/// a neighbour's surface where there was none is more of that. Surfaces are running means, so their noise
+/// shrinks with time. Not thread-safe.
 class Background {
  public:
   Background(const Camera& camera, const BackgroundOptions& options);
 
-  /// Learns from the next frame (rising stamps, the camera's size) and returns it with everything that moves
-  /// taken out (0), and a rim of one pixel around it.
-  [[nodiscard]] DepthImage learn(const DepthImage& image);
+  /// Learns from the next frame (rising stamps, the camera's size) and takes it apart.
+  [[nodiscard]] Layers learn(const DepthImage& image);
 
   /// How much the surfaces have changed since the last call of `surfaces`; large also after the 3rd, 10th and
   /// 30th frame, for what the means have gained.
@@ -36,6 +42,7 @@ class Background {
   [[nodiscard]] DepthImage surfaces();
 
  private:
+  enum class Kind : std::uint8_t { nothing, still, nearer, farther };
   struct Pixel {
     float surface = 0, candidate = 0;  ///< units; 0: not seen yet
     std::uint32_t candidate_since_ms = 0, missing_since_ms = 0;
@@ -43,7 +50,12 @@ class Background {
     bool missing = false;
   };
   // Times are milliseconds that wrap: only differences count, and a clock may be set forward by years.
-  [[nodiscard]] bool moving(Pixel* pixel, float units, std::uint32_t now_ms);
+  [[nodiscard]] Kind learn(std::size_t i, float units, std::uint32_t now_ms);
+  [[nodiscard]] bool continues_a_neighbour(std::size_t i, float units) const;
+  [[nodiscard]] Layers separated(const DepthImage& image) const;
+  [[nodiscard]] float tolerance_of(float units) const;
+  template <class Visit>
+  void for_each_around(std::size_t i, const Visit& visit) const;
   void miss(Pixel* pixel, std::uint32_t now_ms);
   void replace(Pixel* pixel, float units);
 
@@ -54,6 +66,7 @@ class Background {
   std::size_t replaced_ = 0;  ///< pixels, since the surfaces were last asked for
   int frames_ = 0;
   std::vector<Pixel> pixels_;
+  std::vector<Kind> kinds_;  ///< of the newest frame; what is not known to be there yet counts as nearer
 };
 
 }  // namespace liloc

@@ -83,10 +83,9 @@ GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
   if (!options_.drop_moving) {
     surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);
   } else {
-    moving = image;
-    image = background.learn(image);
-    for (std::size_t i = 0; i < moving.units.size(); ++i)
-      if (image.units[i] != 0) moving.units[i] = 0;
+    Layers layers = background.learn(image);
+    image = std::move(layers.still);
+    moving = std::move(layers.moving);
     if (background.change() == Change::small && image.stamp_ns - epoch_since_ns_ > options_.renew_ns) {
       ++epoch_;
       epoch_since_ns_ = image.stamp_ns;

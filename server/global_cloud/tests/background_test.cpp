@@ -25,11 +25,13 @@ std::ptrdiff_t count(const DepthImage& image, std::uint16_t units) {
 
 TEST(Background, WhoWalksByIsTakenOutWithARim) {
   Background background(kCamera, {});
-  EXPECT_EQ(count(background.learn(with_visitor(0, 0, 0)), 4000), 40 * 30);
+  EXPECT_EQ(count(background.learn(with_visitor(0, 0, 0)).still, 4000), 40 * 30);
   for (int i = 1; i < 20; ++i) {
-    const DepthImage still = background.learn(with_visitor(0.15 * i, i, i + 6));
+    const auto [still, moving] = background.learn(with_visitor(0.15 * i, i, i + 6));
     EXPECT_EQ(count(still, 2500), 0) << "frame " << i;
     EXPECT_EQ(count(still, 0), 8 * 30) << "frame " << i;
+    EXPECT_EQ(count(moving, 2500), 6 * 30) << "frame " << i;
+    EXPECT_EQ(count(moving, 4000), 0) << "the wall beside somebody does not move, frame " << i;
   }
 }
 
@@ -37,7 +39,7 @@ TEST(Background, WhatStaysBecomesMapWithinSeconds) {
   Background background(kCamera, {});
   (void)background.learn(with_visitor(0, 0, 0));
   for (int i = 1; i <= 18; ++i) {
-    const DepthImage still = background.learn(with_visitor(0.15 * i, 10, 16));
+    const DepthImage still = background.learn(with_visitor(0.15 * i, 10, 16)).still;
     EXPECT_EQ(count(still, 2500), 0.15 * i < 2.2 ? 0 : 6 * 30) << "at " << 0.15 * i << " s";
   }
 }
@@ -46,16 +48,16 @@ TEST(Background, AClockThatWasSetForwardByYearsChangesNothing) {
   Background background(kCamera, {});
   (void)background.learn(with_visitor(-3e8, 0, 0));
   for (int i = 1; i <= 18; ++i) {
-    const DepthImage still = background.learn(with_visitor(0.15 * i, 10, 16));
+    const DepthImage still = background.learn(with_visitor(0.15 * i, 10, 16)).still;
     EXPECT_EQ(count(still, 2500), 0.15 * i < 2.2 ? 0 : 6 * 30) << "at " << 0.15 * i << " s";
   }
 }
 
 TEST(Background, WhatLeavesUncoversMapAtOnce) {
   Background background(kCamera, {});
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(count(background.learn(with_visitor(0.15 * i, 10, 16)), 0), 0);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(count(background.learn(with_visitor(0.15 * i, 10, 16)).still, 0), 0);
   (void)background.learn(with_visitor(1.00, 0, 0));
-  EXPECT_EQ(count(background.learn(with_visitor(1.15, 0, 0)), 4000), 40 * 30);
+  EXPECT_EQ(count(background.learn(with_visitor(1.15, 0, 0)).still, 4000), 40 * 30);
   EXPECT_EQ(background.change(), Change::large);
   EXPECT_EQ(count(background.surfaces(), 4000), 40 * 30);
 }
@@ -108,8 +110,56 @@ TEST(Background, NoiseAndGapsMoveNothing) {
               ? std::uint16_t{0}
               : static_cast<std::uint16_t>(4000 + (p * 31 + static_cast<std::size_t>(i) * 17) % 60);
     const auto gaps = count(image, 0);
-    EXPECT_EQ(count(background.learn(image), 0), gaps);
+    const auto [still, moving] = background.learn(image);
+    EXPECT_EQ(count(still, 0), gaps);
+    EXPECT_EQ(count(moving, 0), 40 * 30);
   }
+}
+
+TEST(Background, AReturnWhereOneWasLackingIsTheRoomsIfItContinuesIt) {
+  Background background(kCamera, {});
+  for (int i = 0; i < 12; ++i) {
+    DepthImage image = with_visitor(0.15 * i, 0, 0);
+    std::ptrdiff_t fresh = 0;
+    for (std::size_t p = 0; p < image.units.size(); ++p) {
+      const std::size_t first_at = p % 5 == 0 ? p * 13 % 12 : 0;  // one pixel in five is dark for up to 2 s
+      if (static_cast<std::size_t>(i) < first_at) image.units[p] = 0;
+      fresh += static_cast<std::size_t>(i) == first_at && i > 0 ? 1 : 0;
+    }
+    const auto gaps = count(image, 0);
+    const auto [still, moving] = background.learn(image);
+    EXPECT_EQ(fresh > 0, i > 0) << "frame " << i;
+    EXPECT_EQ(count(moving, 0), 40 * 30) << "frame " << i;
+    EXPECT_TRUE(i < 4 || count(still, 0) == gaps) << "frame " << i;
+  }
+}
+
+TEST(Background, APixelAloneIsNoiseAndTakesNothingAlong) {
+  Background background(kCamera, {});
+  for (int i = 0; i < 20; ++i) {
+    DepthImage image = with_visitor(0.15 * i, 0, 0);
+    const auto at = static_cast<std::size_t>(40 * (1 + i) + 2 * i);
+    if (i > 0) image.units[at] = i % 2 == 0 ? 2500 : 5500;
+    const auto [still, moving] = background.learn(image);
+    EXPECT_EQ(count(still, 4000), 40 * 30 - (i > 0 ? 1 : 0)) << "frame " << i;
+    EXPECT_EQ(count(moving, 0), 40 * 30) << "frame " << i;
+  }
+}
+
+TEST(Background, AVisitorBeforeNothingIsNotTakenForTheRoomBesideHim) {
+  Background background(kCamera, {});
+  const auto half_dark = [](double at_s, int from, int to) {  // beyond column 20 the room returns nothing
+    DepthImage image = with_visitor(at_s, 0, 0);
+    for (std::size_t p = 0; p < image.units.size(); ++p) {
+      const auto u = static_cast<int>(p % 40);
+      if (u >= 20) image.units[p] = 0;
+      if (u >= from && u < to) image.units[p] = 2500;
+    }
+    return image;
+  };
+  for (int i = 0; i < 8; ++i) (void)background.learn(half_dark(0.15 * i, 0, 0));
+  for (int i = 8; i < 20; ++i)
+    EXPECT_EQ(count(background.learn(half_dark(0.15 * i, 8 + i, 14 + i)).moving, 2500), 6 * 30) << i;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -38,6 +39,28 @@ double quantile(std::vector<double> values, double q) {
 Pose DriftRun::error(std::size_t i, std::size_t j) const {
   return (truth[i].inverse() * truth[j]).inverse() *
          (frames[i].T_odom_sensor.inverse() * frames[j].T_odom_sensor);
+}
+
+DriftSpread spread_of(const DriftRun& run) {
+  const auto& f = run.frames;
+  std::vector<double> moved, turned;
+  for (std::size_t i = 0, j = 0; i < f.size(); ++i) {
+    while (j < f.size() && f[j].stamp_ns - f[i].stamp_ns < from_ms(1000)) ++j;
+    if (j == f.size()) break;
+    const Pose E = run.error(i, j);
+    moved.push_back(E.translation().norm());
+    turned.push_back(rotation_angle_rad(E));
+  }
+  const auto count = static_cast<Eigen::Index>(f.size());
+  Eigen::Matrix3Xd estimate(3, count), truth(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    estimate.col(i) = f[static_cast<std::size_t>(i)].T_odom_sensor.translation();
+    truth.col(i) = run.truth[static_cast<std::size_t>(i)].translation();
+  }
+  const Eigen::Isometry3d T(Eigen::umeyama(estimate, truth, false));
+  const double squares = (T * estimate - truth).squaredNorm();
+  return {quantile(moved, 0.5), quantile(moved, 0.9), quantile(turned, 0.5),
+          std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(count, 1)))};
 }
 
 Result<DriftRun> run_drift(const DeviceRecording& device, const DriftOptions& options) {
@@ -117,16 +140,19 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
     good += degrees(rotation_angle_rad(E)) <= 3 && E.translation().norm() <= 0.1;
   }
   const Pose end = run.error(0, f.size() - 1);
+  const DriftSpread spread = spread_of(run);
   const double seconds = std::max(to_seconds(f.back().stamp_ns - f.front().stamp_ns), 1e-3);
   fmt::print(
-      "{:28} path {:5.2f} m  end {:5.1f} mm {:5.2f} %  {:5.2f} deg  pairs {:.3f} (median {:.1f} mm, jump "
+      "{:28} path {:5.2f} m  end {:5.1f} mm {:5.2f} %  {:5.2f} deg  rms {:.1f} mm  second {:.1f}/{:.1f} mm "
+      "{:.2f} deg  pairs {:.3f} (median {:.1f} mm, jump "
       "{:.0f} mm)  "
       "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B  "
       "around {} B  residual {:.1f} mm  {:.1f} ms of CPU per second{}{}\n",
       name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
-      degrees(rotation_angle_rad(end)), good / static_cast<double>(f.size() - 1), quantile(step_mm, 0.5),
-      1e3 * jump_m, quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess, dull,
-      f.back().odom_segment + 1, run.worst_up_deg,
+      degrees(rotation_angle_rad(end)), 1e3 * spread.trajectory_m, 1e3 * spread.second_median_m,
+      1e3 * spread.second_p90_m, degrees(spread.second_median_rad), good / static_cast<double>(f.size() - 1),
+      quantile(step_mm, 0.5), 1e3 * jump_m, quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess,
+      dull, f.back().odom_segment + 1, run.worst_up_deg,
       run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)),
       run.extra_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
       1e3 * run.cpu_s / seconds,

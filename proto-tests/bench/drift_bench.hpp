@@ -31,11 +31,20 @@ struct DriftRun {
   [[nodiscard]] Pose error(std::size_t i, std::size_t j) const;
 };
 
+/// Errors that one wrong pose of the ground truth does not decide, as the end error does; the measures of the
+/// TUM benchmark (Sturm et al. 2012).
+struct DriftSpread {
+  double second_median_m = 0, second_p90_m = 0;  ///< of the relative poses over one second, from every frame on
+  double second_median_rad = 0;
+  double trajectory_m = 0;  ///< root mean square after the best rigid alignment of the whole trajectory
+};
+[[nodiscard]] DriftSpread spread_of(const DriftRun& run);
+
 /// Errors: unreadable files, no ground truth.
 [[nodiscard]] Result<DriftRun> run_drift(const DeviceRecording& device, const DriftOptions& options);
 /// One line; `frames` adds one for each frame. Drift is the judge's figure: error of the relative pose from the
-/// first to the last frame, in per cent of the path. "jump": the largest error from one frame to the next that
-/// was measured (not marked as a guess).
+/// first to the last frame, in per cent of the path; DriftSpread follows. "jump": the largest error from one
+/// frame to the next that was measured (not marked as a guess).
 void print_drift(const std::string& name, const DriftRun& run, bool frames);
 
 /// Why energy cannot be measured on this machine; empty where it can.

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace liloc {
+namespace {
+
+constexpr std::uint16_t kSaturated = 0xFFFF;
+
+}  // namespace
 
 DepthImage thinned(const DepthImage& image, int factor) {
   DepthImage small;
@@ -11,7 +16,10 @@ DepthImage thinned(const DepthImage& image, int factor) {
   small.height = (image.height + factor - 1) / factor;
   small.units.reserve(static_cast<std::size_t>(small.width) * static_cast<std::size_t>(small.height));
   for (int v = 0; v < image.height; v += factor)
-    for (int u = 0; u < image.width; u += factor) small.units.push_back(image.at(u, v));
+    for (int u = 0; u < image.width; u += factor) {
+      const std::uint16_t depth = image.at(u, v);
+      small.units.push_back(depth == kSaturated ? std::uint16_t{0} : depth);
+    }
   return small;
 }
 

@@ -65,8 +65,7 @@ Status Client::Impl::connect(const Options& options) {
   dispatcher = std::move(*made);
   wire::ClientCallbacks callbacks;
   callbacks.on_reply = [this](const SpotReply& reply) {
-    session->add_reply(reply);
-    if (on_reply) on_reply(to_public(reply));
+    if (session->add_reply(reply) && on_reply) on_reply(to_public(reply));
   };
   callbacks.on_server = [this](bool matched) { take_server(matched); };
   callbacks.on_bad_reply = [this](const std::string& why) { log::warning("{}: reply dropped: {}", id, why); };

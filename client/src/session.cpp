@@ -6,6 +6,7 @@
 
 #include "client/src/frame_budget.hpp"
 #include "client/src/sample_inbox.hpp"
+#include "client/src/server_choice.hpp"
 #include "client/src/session_clock.hpp"
 #include "client/src/trace.hpp"
 #include "common/base/bounded_queue.hpp"
@@ -50,6 +51,7 @@ struct Session::Impl {
   void hand_over_samples();
   [[nodiscard]] std::optional<SpotRequest> take_request();
   void send(SpotRequest request);
+  [[nodiscard]] bool follows(const SpotReply& reply);
   [[nodiscard]] const std::string& id() const { return options.engine.client_id; }
 
   const SessionOptions options;
@@ -58,6 +60,9 @@ struct Session::Impl {
   SessionClock clock;
   SessionReport report;
   std::atomic<bool> stopped = false;
+
+  std::mutex servers_mutex;
+  ServerChoice servers;
 
   std::mutex engine_mutex;  ///< held for one frame or one reply
   Engine engine;
@@ -158,6 +163,15 @@ void Session::Impl::send(SpotRequest request) {
   report.count(&SessionStats::requests_unsent);
 }
 
+bool Session::Impl::follows(const SpotReply& reply) {
+  const std::scoped_lock lock(servers_mutex);
+  const std::string before = servers.followed();
+  if (!servers.takes(reply)) return false;
+  if (!before.empty() && servers.followed() != before)
+    log::warning("{}: {} answers in place of {}", id(), servers.followed(), before);
+  return true;
+}
+
 Status Session::Impl::push(SensorFrame frame) {
   if (stopped) return fail("{}: stopped: no more frames are taken", id());
   if (clock.frame(frame.image.stamp_ns, now())) {
@@ -215,7 +229,8 @@ Status Session::push_imu(const ImuSample& sample) {
   return impl_->push(sample);
 }
 
-void Session::add_reply(const SpotReply& reply) {
+bool Session::add_reply(const SpotReply& reply) {
+  if (!impl_->follows(reply)) return false;
   if (impl_->clock.learn(reply, now())) {
     impl_->report.count(&SessionStats::clock_jumps);
     log::warning("{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
@@ -225,6 +240,7 @@ void Session::add_reply(const SpotReply& reply) {
   impl_->engine.add_reply(reply);
   if (impl_->trace) impl_->trace->on_reply(reply);
   impl_->report.reply(reply);
+  return true;
 }
 
 std::optional<FrameResult> Session::newest_frame() const {

@@ -41,8 +41,8 @@ class Session {
   [[nodiscard]] Status push_odometry(const OdometrySample& sample);
   /// Handed to the engine before the next frame. Errors: no IMU in the options, stopped.
   [[nodiscard]] Status push_imu(const ImuSample& sample);
-  /// Waits at most for the frame in work.
-  void add_reply(const SpotReply& reply);
+  /// Waits at most for the frame in work. False where another server's answers count (ServerChoice).
+  bool add_reply(const SpotReply& reply);
 
   [[nodiscard]] std::optional<FrameResult> newest_frame() const;
   [[nodiscard]] Tracking tracking() const;

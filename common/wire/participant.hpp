@@ -6,8 +6,8 @@
 //   ... subscribe, then (*dispatcher)->start();
 //
 // Discovery is a star, never a mesh: the server sits at the domain's first port and everyone else knows only
-// that one (and the second, where a recording or a simulation may stream from). CYCLONEDDS_URI, where set,
-// replaces the whole profile.
+// that one, the second, where a recording or a simulation may stream from, and the third, of a standby.
+// CYCLONEDDS_URI, where set, replaces the whole profile.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -19,9 +19,10 @@
 namespace liloc::wire {
 
 enum class Role {
-  server,  ///< port index 0; at most one process a host and domain
-  source,  ///< port index 1: streams of a recording or a simulation, seen by the server and by clients
-  client,  ///< no fixed port: devices, ceiling LiDARs, tools
+  server,   ///< port index 0; at most one process a host and domain
+  source,   ///< port index 1: streams of a recording or a simulation, seen by servers and by clients
+  standby,  ///< port index 2: a second server on one host
+  client,   ///< no fixed port: devices, ceiling LiDARs, tools
   peer,  ///< finds every process of this host, e.g. the drivers on a robot; takes the lowest free index, so not
          ///< on a host where a server is to start later in the same domain
 };
@@ -30,7 +31,7 @@ struct DomainOptions {
   int domain = 0;  ///< 0..230
   Role role = Role::client;
   std::string interface = "lo";  ///< name ("eth0"), address ("10.0.0.7"), or "auto"; "lo" never leaves the host
-  /// Hosts of the server and of sources, for client and source; empty: this host.
+  /// Hosts of the servers and of sources, for client and source; empty: this host.
   std::vector<std::string> peers = {};
   int receive_buffer_kb = 4096;  ///< lowered, with a warning, to what net.core.rmem_max allows
 };

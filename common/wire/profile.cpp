@@ -35,7 +35,7 @@ std::string interface_xml(const std::string& interface) {
 }
 
 std::string peers_xml(const DomainOptions& options) {
-  if (options.role == Role::server) return "";
+  if (options.role == Role::server || options.role == Role::standby) return "";
   std::vector<std::string> hosts = options.peers;
   if (hosts.empty() || options.role == Role::peer) hosts.emplace_back("127.0.0.1");
   std::string xml = "<Peers>";
@@ -43,8 +43,8 @@ std::string peers_xml(const DomainOptions& options) {
     if (options.role == Role::peer)
       xml += fmt::format(R"(<Peer address="{}"/>)", host);
     else
-      for (const int port : {server_port(options.domain), server_port(options.domain) + 2})
-        xml += fmt::format(R"(<Peer address="{}:{}"/>)", host, port);
+      for (const int index : {0, 1, 2})
+        xml += fmt::format(R"(<Peer address="{}:{}"/>)", host, server_port(options.domain) + 2 * index);
   }
   return xml + "</Peers>";
 }
@@ -55,6 +55,8 @@ std::string_view index_of(Role role) {
       return "0";
     case Role::source:
       return "1";
+    case Role::standby:
+      return "2";
     case Role::client:
       return "none";
     case Role::peer:

@@ -11,7 +11,16 @@ namespace {
 struct Raw {
   std::string method = "liloc", verify, icp, state;
   int hold_ms = 100;
+  bool standby = false;
 };
+
+/// A second server on one host has its own port, name and file.
+void settle_standby(const CLI::App& app, const Raw& raw, ServerOptions& options) {
+  options.seat.role = raw.standby ? wire::Role::standby : wire::Role::server;
+  if (raw.standby && app.count("--server-id") == 0) options.service.server_id += "-standby";
+  if (raw.state == "none") return;
+  options.state_file = raw.state.empty() ? state_file_of(options.site_file, raw.standby) : raw.state;
+}
 
 void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   app.set_version_flag("--version", LILOC_VERSION);
@@ -26,8 +35,12 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   network->add_option("--domain", options.seat.domain, "DDS domain, 0..230")->capture_default_str();
   network->add_option("--interface", options.seat.interface, "Network interface: name, address or auto")
       ->capture_default_str();
-  network->add_option("--server-id", options.service.server_id, "Name in replies and status")
+  network
+      ->add_option("--server-id", options.service.server_id,
+                   "Name in replies and status; of two servers each needs its own")
       ->capture_default_str();
+  network->add_flag("--standby", raw.standby,
+                    "Beside another server on this host; --server-id is then NAME-standby unless it is given");
 
   auto* method = app.add_option_group("localization");
   method->add_option("--voxel", options.localizer.voxel_size_m, "Voxel size of the global cloud, m")
@@ -88,7 +101,6 @@ Status set_variants(const Raw& raw, LocalizerOptions& localizer) {
 
 Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
   ServerOptions options;
-  options.seat.role = wire::Role::server;
   Raw raw;
   CLI::App app("Tells devices where they are, from the clouds of the LiDARs on the ceiling.", "liloc-server");
   declare(app, options, raw);
@@ -102,8 +114,7 @@ Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
   const auto method = method_from(raw.method);
   if (!method) return tl::unexpected(method.error());
   options.localizer.method = *method;
-  if (raw.state != "none")
-    options.state_file = raw.state.empty() ? state_file_of(options.site_file) : raw.state;
+  settle_standby(app, raw, options);
   if (const auto set = set_variants(raw, options.localizer); !set) return tl::unexpected(set.error());
   options.service.hold = std::chrono::milliseconds(raw.hold_ms);
   options.localizer.server_id = options.service.server_id;

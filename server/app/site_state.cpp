@@ -110,8 +110,8 @@ std::string free_name(const std::string& file) {
 
 }  // namespace
 
-std::string state_file_of(const std::string& site_file) {
-  return fs::path(site_file).replace_extension(".state.json").string();
+std::string state_file_of(const std::string& site_file, bool standby) {
+  return fs::path(site_file).replace_extension(standby ? ".standby.state.json" : ".state.json").string();
 }
 
 Result<CellBounds> read_site_state(const std::string& file, const Site& site, double voxel_size_m) {

@@ -7,8 +7,9 @@
 
 namespace liloc {
 
-/// The state beside a site file: "x/site.json" has "x/site.state.json".
-[[nodiscard]] std::string state_file_of(const std::string& site_file);
+/// The state beside a site file: "x/site.json" has "x/site.state.json", and "x/site.standby.state.json" of a
+/// second server on the same host.
+[[nodiscard]] std::string state_file_of(const std::string& site_file, bool standby = false);
 
 /// Errors name the file, the field and the remedy: not a state of this version, learned with other voxels or
 /// under other ceiling LiDARs, or a value out of range. A file that does not exist is an empty state.

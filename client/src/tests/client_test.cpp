@@ -39,7 +39,7 @@ const auto kBegin = std::chrono::steady_clock::now();
 /// A server that knows the answer: odometry lies at (1, 2, 3).
 class FakeServer {
  public:
-  FakeServer() {
+  explicit FakeServer(const std::string& id = "edge1") {
     auto joined = wire::Participant::create({.domain = kDomain, .role = wire::Role::server});
     EXPECT_TRUE(joined) << (joined ? "" : joined.error().message);
     participant_ = std::move(*joined);
@@ -59,7 +59,7 @@ class FakeServer {
       EXPECT_TRUE(link_->reply(arrival.from, reply));
       ++answered;
     };
-    link_ = std::move(*wire::ServerLink::create(*dispatcher_, {}, callbacks));
+    link_ = std::move(*wire::ServerLink::create(*dispatcher_, {.server_id = id}, callbacks));
     dispatcher_->start();
   }
   ~FakeServer() { dispatcher_->stop(); }
@@ -154,6 +154,28 @@ TEST(Client, TracksCoastsAndComesBackWithTheServer) {
   EXPECT_EQ(static_cast<std::uint64_t>(poses), stats.frames);
   EXPECT_EQ(static_cast<std::uint64_t>(verified), stats.replies_verified);
   EXPECT_GT(stats.frame_ms_median, 0.0);
+}
+
+TEST(Client, AStandbyTakesOver) {
+  auto first = std::make_unique<FakeServer>("edge1");
+  const FakeServer standby("edge2");
+  auto made = Client::create(options());
+  ASSERT_TRUE(made) << made.error();
+  Client& client = *made.value();
+  Feeder feeder(client);
+  ASSERT_TRUE(feeder.until([&](const auto& pose) {
+    return pose.state == State::tracking && first->answered > 3 && standby.answered > 3;
+  }));
+  const auto before = client.stats();
+  EXPECT_LE(before.replies, before.requests);  // one answer to each, of the two that come
+  first.reset();
+  bool lost = false;
+  ASSERT_TRUE(feeder.until([&](const auto& pose) {
+    lost |= !pose.T_map_sensor;
+    return pose.state == State::tracking && client.stats().replies_verified > before.replies_verified + 5;
+  }));
+  EXPECT_FALSE(lost);
+  EXPECT_TRUE(client.newest().server_connected);
 }
 
 /// At the pace of life, by a clock that runs ahead of the ceiling's.

@@ -18,12 +18,20 @@ TEST(Profile, TheServerSitsOnTheFirstPortAndNamesNoPeer) {
   EXPECT_TRUE(has(*xml, "<AllowMulticast>false<"));
 }
 
+TEST(Profile, AStandbySitsOnTheThirdPortAndNamesNoPeer) {
+  const auto xml = profile_xml({.domain = 3, .role = Role::standby});
+  ASSERT_TRUE(xml);
+  EXPECT_TRUE(has(*xml, "<ParticipantIndex>2<"));
+  EXPECT_FALSE(has(*xml, "Peer"));
+}
+
 TEST(Profile, AClientKnowsTheServersAndTheSourcesPort) {
   const auto xml = profile_xml({.domain = 2, .peers = {"10.0.0.7"}});
   ASSERT_TRUE(xml);
   EXPECT_TRUE(has(*xml, "<ParticipantIndex>none<"));
   EXPECT_TRUE(has(*xml, R"("10.0.0.7:7910")"));
   EXPECT_TRUE(has(*xml, R"("10.0.0.7:7912")"));
+  EXPECT_TRUE(has(*xml, R"("10.0.0.7:7914")"));
 }
 
 TEST(Profile, LargeDatagramsAreForLoopbackAlone) {

@@ -94,4 +94,19 @@ TEST(Program, ASecondServerInADomainOfAHostFails) {
   fs::remove(site);
 }
 
+TEST(Program, AStandbySitsBesideAServerOnOneHost) {
+  const fs::path site = site_file();
+  const std::vector<std::string> here{"--site", site.string(), "--domain", "146"};
+  std::vector<std::string> beside = here;
+  beside.emplace_back("--standby");
+  const pid_t server = spawn(here), standby = spawn(beside);
+  std::this_thread::sleep_for(600ms);
+  EXPECT_EQ(exit_code(spawn(beside)), 1);  // one standby, not two
+  for (const pid_t pid : {server, standby}) {
+    kill(pid, SIGTERM);
+    EXPECT_EQ(exit_code(pid), 0);
+  }
+  fs::remove(site);
+}
+
 }  // namespace

@@ -45,6 +45,7 @@ CellBounds some_bounds() {
 
 TEST_F(SiteStateFile, LiesBesideTheSite) {
   EXPECT_EQ(state_file_of("a/b/site.json"), "a/b/site.state.json");
+  EXPECT_EQ(state_file_of("a/b/site.json", true), "a/b/site.standby.state.json");
 }
 
 TEST_F(SiteStateFile, WhatIsWrittenIsRead) {

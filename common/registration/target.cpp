@@ -17,17 +17,23 @@ constexpr double kBeside_m = 0.2;   // of what is seen of somebody from above: t
 constexpr double kAround_m = 0.45;  // within which they hide a surface from the device, or are one themselves
 constexpr float kGone_m = 0.05F;
 
-/// Surfaces near `around`, and those that a ceiling sensor looks through by now and none sees any more.
+/// Whether a ceiling sensor looks through the place by now and none sees anything there.
+bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
+  bool through = false;
+  for (const SightView& view : views) {
+    const Sight word = view.look(p_map, kGone_m);
+    if (word == Sight::agrees) return false;
+    through = through || word == Sight::conflict;
+  }
+  return through;
+}
+
+/// Surfaces near `around`, and those that are gone.
 std::vector<std::uint8_t> stale_points(const Cloud& cloud_map, const std::vector<SightView>& views,
                                        const Movers& around) {
   std::vector<std::uint8_t> stale(cloud_map.size(), 0);
-  for (std::size_t i = 0; i < cloud_map.size(); ++i) {
-    const Eigen::Vector3f& p = cloud_map.points[i];
-    const auto any = [&](Sight word) {
-      return std::ranges::any_of(views, [&](const SightView& view) { return view.look(p, kGone_m) == word; });
-    };
-    stale[i] = around.at(p) || (any(Sight::conflict) && !any(Sight::agrees)) ? 1 : 0;
-  }
+  for (std::size_t i = 0; i < cloud_map.size(); ++i)
+    stale[i] = around.at(cloud_map.points[i]) || gone(views, cloud_map.points[i]) ? 1 : 0;
   return stale;
 }
 

@@ -9,7 +9,7 @@
 namespace liloc {
 namespace {
 
-constexpr auto kPreparePeriod = std::chrono::milliseconds(200);
+constexpr auto kPreparePeriod = std::chrono::milliseconds(50);  // a third of a ceiling frame's
 constexpr auto kSavePeriod = std::chrono::minutes(1);
 
 StampNs wall_clock_ns() {

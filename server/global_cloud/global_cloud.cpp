@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace liloc {
 namespace {
@@ -122,35 +121,42 @@ GlobalCloud::Frame GlobalCloud::nearest_frame(std::size_t lidar, StampNs stamp_n
   return best && gap(best->stamp_ns(), stamp_ns) <= options_.match_ns ? best : nullptr;
 }
 
+std::shared_ptr<const Snapshot> GlobalCloud::snapshot_of(std::vector<Frame> frames) {
+  const auto known = std::ranges::find(snapshots_, frames, &Snapshot::frames);
+  if (known != snapshots_.end()) return *known;
+  auto room = room_of(frames);
+  snapshots_.push_back(std::make_shared<const Snapshot>(std::move(frames), std::move(room)));
+  if (snapshots_.size() > kSnapshotsKept) snapshots_.pop_front();
+  return snapshots_.back();
+}
+
 Result<std::shared_ptr<const Snapshot>> GlobalCloud::nearest(StampNs stamp_ns) {
   const std::scoped_lock lock(mutex_);
   std::vector<Frame> frames;
-  StampNs newest = 0, snapshot_stamp = 0, least = std::numeric_limits<StampNs>::max();
+  StampNs newest = 0;
   for (std::size_t lidar = 0; lidar < frames_.size(); ++lidar) {
     if (!frames_[lidar].empty()) newest = std::max(newest, frames_[lidar].back()->stamp_ns());
-    const Frame frame = nearest_frame(lidar, stamp_ns);
-    if (!frame) continue;
-    if (gap(frame->stamp_ns(), stamp_ns) < least) {
-      least = gap(frame->stamp_ns(), stamp_ns);
-      snapshot_stamp = frame->stamp_ns();
-    }
-    frames.push_back(frame);
+    if (Frame frame = nearest_frame(lidar, stamp_ns)) frames.push_back(std::move(frame));
   }
   if (frames.empty())
     return newest == 0 ? fail("no ceiling LiDAR has sent a frame yet")
                        : fail("no ceiling frame within {:.0f} ms of the request; the newest is {:.0f} ms away",
                               to_ms(options_.match_ns), to_ms(newest - stamp_ns));
-  const auto known =
-      std::find_if(snapshots_.begin(), snapshots_.end(), [&](const auto& s) { return s->frames() == frames; });
-  if (known != snapshots_.end()) return *known;
-  const auto room = room_of(frames);
-  snapshots_.push_back(std::make_shared<const Snapshot>(snapshot_stamp, std::move(frames), room));
-  if (snapshots_.size() > kSnapshotsKept) snapshots_.pop_front();
-  return snapshots_.back();
+  return snapshot_of(std::move(frames));
+}
+
+bool GlobalCloud::worth_describing(const std::shared_ptr<const StitchedRoom>& room) {
+  const auto asked = [](const auto& known) { return known->descriptors_asked(); };
+  if (std::ranges::any_of(rooms_, asked))
+    describe_ahead_ = kRoomsDescribedAhead;
+  else if (room != prepared_ && describe_ahead_ > 0)
+    --describe_ahead_;
+  prepared_ = room;
+  return describe_ahead_ > 0;
 }
 
 void GlobalCloud::prepare() {
-  std::shared_ptr<const StitchedRoom> room;
+  std::shared_ptr<const Snapshot> snapshot;
   bool describe = false;
   {
     const std::scoped_lock lock(mutex_);
@@ -162,16 +168,11 @@ void GlobalCloud::prepare() {
       if (!held.empty() && held.back()->stamp_ns() > newest - 2 * options_.match_ns)
         frames.push_back(held.back());
     if (frames.empty()) return;
-    room = room_of(frames);
-    const auto asked = [](const auto& known) { return known->descriptors_asked(); };
-    if (std::ranges::any_of(rooms_, asked))
-      describe_ahead_ = kRoomsDescribedAhead;
-    else if (room != prepared_ && describe_ahead_ > 0)
-      --describe_ahead_;
-    prepared_ = room;
-    describe = describe_ahead_ > 0;
+    snapshot = snapshot_of(std::move(frames));
+    describe = worth_describing(snapshot->room());
   }
-  room->prepare(describe);
+  snapshot->room()->prepare(describe);
+  (void)snapshot->target();
 }
 
 }  // namespace liloc

@@ -36,12 +36,12 @@ class GlobalCloud {
   [[nodiscard]] Status add_points(std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor);
 
   /// The snapshot nearest to `stamp_ns`: of each LiDAR the frame nearest to it, if within `match_ns`.
-  /// Error: no LiDAR has one. The snapshot's own stamp is that of its nearest frame.
+  /// Error: no LiDAR has one.
   [[nodiscard]] Result<std::shared_ptr<const Snapshot>> nearest(StampNs stamp_ns);
 
-  /// Builds what the next snapshot will need of the room as it is now, so that no request has to wait for it.
-  /// Costs nothing while the room does not change; descriptors only while some request lately asked for them.
-  /// Called by a thread of its own.
+  /// Builds the newest snapshot, so that no request has to wait for it: the room's indices if it has changed,
+  /// what moves, and the lines of sight. Costs nothing until there is a newer frame; descriptors are made only
+  /// while some request lately asked for them. Called by a thread of its own.
   void prepare();
 
   [[nodiscard]] const Site& site() const { return site_; }
@@ -59,6 +59,8 @@ class GlobalCloud {
   [[nodiscard]] bool clock_set_back(std::size_t lidar, StampNs stamp_ns);                       ///< mutex_ held
   [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);                             ///< mutex_ held
   [[nodiscard]] std::shared_ptr<const StitchedRoom> room_of(const std::vector<Frame>& frames);  ///< mutex_ held
+  [[nodiscard]] std::shared_ptr<const Snapshot> snapshot_of(std::vector<Frame> frames);         ///< mutex_ held
+  [[nodiscard]] bool worth_describing(const std::shared_ptr<const StitchedRoom>& room);         ///< mutex_ held
   [[nodiscard]] Frame nearest_frame(std::size_t lidar, StampNs stamp_ns) const;  ///< null: none; mutex_ held
 
   const Site site_;

@@ -1,5 +1,8 @@
 #include "server/global_cloud/snapshot.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+
 #include "common/base/log.hpp"
 #include "common/geometry/voxel.hpp"
 #include "common/registration/normals.hpp"
@@ -97,6 +100,11 @@ void StitchedRoom::prepare(bool describe) const {
   if (describe) (void)described();
 }
 
+StampNs Snapshot::stamp_near(StampNs stamp_ns) const {
+  const auto away = [&](const auto& frame) { return std::abs(frame->stamp_ns() - stamp_ns); };
+  return (*std::ranges::min_element(frames_, {}, away))->stamp_ns();
+}
+
 const Target& Snapshot::target() const {
   std::call_once(once_, [this] {
     target_.surfaces = room_->surfaces();
@@ -105,6 +113,7 @@ const Target& Snapshot::target() const {
       append(target_.moving_map, frame->moving_map());
     }
     target_.present = std::make_shared<const Present>(*target_.surfaces, target_.views, target_.moving_map);
+    has_target_ = true;
   });
   return target_;
 }

@@ -98,14 +98,17 @@ class StitchedRoom {
 class Snapshot {
  public:
   using Frames = std::vector<std::shared_ptr<const LidarFrame>>;
-  Snapshot(StampNs stamp_ns, Frames frames, std::shared_ptr<const StitchedRoom> room)
-      : stamp_ns_(stamp_ns), frames_(std::move(frames)), room_(std::move(room)) {}
+  /// At least one frame.
+  Snapshot(Frames frames, std::shared_ptr<const StitchedRoom> room)
+      : frames_(std::move(frames)), room_(std::move(room)) {}
 
-  [[nodiscard]] StampNs stamp_ns() const { return stamp_ns_; }
+  /// The stamp of its frame nearest to a moment.
+  [[nodiscard]] StampNs stamp_near(StampNs stamp_ns) const;
   [[nodiscard]] const Frames& frames() const { return frames_; }
   [[nodiscard]] const std::shared_ptr<const StitchedRoom>& room() const { return room_; }
   /// The GPC and the ceiling's lines of sight; the first caller builds what is not built yet.
   [[nodiscard]] const Target& target() const;
+  [[nodiscard]] bool has_target() const { return has_target_; }
   /// Descriptors of the thinned GPC.
   [[nodiscard]] const Described& described() const {
     room_->note_descriptors_asked();
@@ -113,11 +116,11 @@ class Snapshot {
   }
 
  private:
-  const StampNs stamp_ns_;
   const Frames frames_;
   const std::shared_ptr<const StitchedRoom> room_;
   mutable std::once_flag once_;
   mutable Target target_;
+  mutable std::atomic<bool> has_target_ = false;
 };
 
 }  // namespace liloc

@@ -57,6 +57,7 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
   if (!cloud) return tl::unexpected(cloud.error());
   auto spot = std::make_shared<Spot>();
   spot->snapshot_ = std::move(snapshot);
+  spot->gpc_stamp_ns_ = spot->snapshot_->stamp_near(request.match_stamp_ns());
   spot->bounds_ = std::move(bounds);
   spot->T_odom_sensor_ = request.T_odom_sensor;
   Cloud extra;

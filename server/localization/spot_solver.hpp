@@ -23,7 +23,7 @@ class Spot {
 
   [[nodiscard]] const SpotProblem& problem() const { return *problem_; }
   [[nodiscard]] const Query& query() const { return query_; }
-  [[nodiscard]] StampNs gpc_stamp_ns() const { return snapshot_->stamp_ns(); }
+  [[nodiscard]] StampNs gpc_stamp_ns() const { return gpc_stamp_ns_; }
   [[nodiscard]] const Pose& T_odom_sensor() const { return T_odom_sensor_; }
   /// What of the request could not be used, for people; empty: nothing.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
@@ -38,6 +38,7 @@ class Spot {
   std::shared_ptr<const CellBounds> bounds_;
   std::string trouble_;
   std::shared_ptr<const Snapshot> snapshot_;
+  StampNs gpc_stamp_ns_ = 0;
   Query query_;
   Eigen::Vector3d middle_sensor_ = Eigen::Vector3d::Zero();
   Pose T_odom_sensor_ = Pose::Identity();

@@ -29,11 +29,26 @@ TEST(GlobalCloud, MatchesTheNearestFramesWithin100Ms) {
   const auto snapshot = cloud.nearest(kT0 + from_ms(260));
   ASSERT_TRUE(snapshot);
   EXPECT_EQ((*snapshot)->frames().size(), 2U);
-  EXPECT_EQ((*snapshot)->stamp_ns(), kT0 + from_ms(250));
+  EXPECT_EQ((*snapshot)->stamp_near(kT0 + from_ms(260)), kT0 + from_ms(250));
   EXPECT_EQ(*cloud.nearest(kT0 + from_ms(262)), *snapshot) << "the same frames are the same snapshot";
   EXPECT_EQ((*cloud.nearest(kT0 + from_ms(400)))->room(), (*snapshot)->room())
       << "nothing moved: the same room";
   EXPECT_THAT(cloud.nearest(kT0 + from_ms(2000)).error().message, testing::HasSubstr("within 100 ms"));
+}
+
+TEST(GlobalCloud, TheNewestSnapshotIsBuiltBeforeAnyoneAsks) {
+  GlobalCloud cloud(two_lidars(), {});
+  const auto frame = [&](std::size_t lidar, int at_ms) {
+    ASSERT_TRUE(cloud.add_depth(lidar, wall(kT0 + from_ms(at_ms))));
+  };
+  frame(0, 0);
+  frame(1, 30);
+  cloud.prepare();
+  EXPECT_TRUE((*cloud.nearest(kT0 + from_ms(40)))->has_target());
+  frame(0, 125);
+  EXPECT_FALSE((*cloud.nearest(kT0 + from_ms(110)))->has_target()) << "a newer frame is another moment";
+  cloud.prepare();
+  EXPECT_TRUE((*cloud.nearest(kT0 + from_ms(110)))->has_target());
 }
 
 TEST(GlobalCloud, DescriptorsAreMadeAheadOnceSomebodyNeedsThem) {

@@ -1,8 +1,7 @@
 #include "common/registration/neighbors.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
+#include <utility>
 
 #include "common/registration/simd.hpp"
 
@@ -18,56 +17,64 @@ LILOC_WIDE void squared_distances(const float* xs, const float* ys, const float*
   }
 }
 
+constexpr int kPartBits = 21;  // of an axis in a cell's key
+constexpr std::uint64_t kLastPart = (1 << kPartBits) - 1;
+
+std::uint64_t part_of(std::uint64_t key, int axis) {
+  return key >> (axis * kPartBits) & kLastPart;
+}
+
+void append_run(const RadiusSearch::Points& from, std::uint32_t begin, std::uint32_t end,
+                RadiusSearch::Points* to) {
+  const auto take = [&](const auto& values, auto* taken) {
+    taken->insert(taken->end(), values.begin() + begin, values.begin() + end);
+  };
+  take(from.index, &to->index);
+  take(from.x, &to->x);
+  take(from.y, &to->y);
+  take(from.z, &to->z);
+}
+
 }  // namespace
 
 RadiusSearch::RadiusSearch(const std::vector<Eigen::Vector3f>& points, double radius_m)
-    : radius_(static_cast<float>(radius_m)), inverse_(1.0F / radius_), squared_radius_(radius_ * radius_) {
+    : radius_(static_cast<float>(radius_m)), squared_radius_(radius_ * radius_) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
   order.reserve(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (points[i].allFinite()) order.emplace_back(cell_key(cell_of(points[i], inverse_)), i);
+    if (points[i].allFinite()) order.emplace_back(cell_key(cell_of(points[i], 1.0F / radius_)), i);
   std::sort(order.begin(), order.end());
-
-  std::size_t cells = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) cells += i == 0 || order[i].first != order[i - 1].first;
-  table_.assign(std::bit_ceil(cells * 2 + 2), Run{0, 0, 0});
-  shift_ = 64 - std::countr_zero(table_.size());
-
-  sorted_.reserve(order.size());
-  index_.reserve(order.size());
+  sorted_.index.reserve(order.size());
+  for (auto* axis : {&sorted_.x, &sorted_.y, &sorted_.z}) axis->reserve(order.size());
   for (const auto& [key, i] : order) {
-    sorted_.push_back(points[i]);
-    index_.push_back(i);
-  }
-  for (std::size_t begin = 0; begin < order.size();) {
-    std::size_t end = begin;
-    while (end < order.size() && order[end].first == order[begin].first) ++end;
-    std::size_t slot = (order[begin].first * 0x9E3779B97F4A7C15ULL) >> shift_;
-    while (table_[slot].end != 0) slot = (slot + 1) & (table_.size() - 1);
-    table_[slot] = {order[begin].first, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
-    begin = end;
+    const auto at = static_cast<std::uint32_t>(sorted_.index.size());
+    if (cells_.empty() || cells_.back().key != key) cells_.push_back({key, at, at});
+    cells_.back().end = at + 1;
+    sorted_.index.push_back(i);
+    sorted_.x.push_back(points[i].x());
+    sorted_.y.push_back(points[i].y());
+    sorted_.z.push_back(points[i].z());
   }
 }
 
-void RadiusSearch::gather(const Eigen::Vector3i& centre, Points* points) const {
-  std::array<const Run*, 27> runs{};
-  std::size_t found = 0, count = 0;
-  for (int dz = -1; dz <= 1; ++dz)
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx)
-        if (const Run* run = find(cell_key(centre + Eigen::Vector3i(dx, dy, dz)))) {
-          runs[found++] = run;
-          count += run->end - run->begin;
-        }
-  points->index.resize(count);
-  for (auto* axis : {&points->x, &points->y, &points->z}) axis->resize(count);
-  std::size_t at = 0;
-  for (std::size_t r = 0; r < found; ++r)
-    for (std::uint32_t i = runs[r]->begin; i < runs[r]->end; ++i, ++at) {
-      points->index[at] = index_[i];
-      points->x[at] = sorted_[i].x();
-      points->y[at] = sorted_[i].y();
-      points->z[at] = sorted_[i].z();
+void RadiusSearch::gather(const Cell& cell, Rows* rows, Points* points) const {
+  const std::uint64_t x = part_of(cell.key, 0), y = part_of(cell.key, 1), z = part_of(cell.key, 2);
+  points->index.clear();
+  for (auto* axis : {&points->x, &points->y, &points->z}) axis->clear();
+  std::size_t row = 0;
+  for (std::uint64_t v = z - 1; v != z + 2; ++v)
+    for (std::uint64_t u = y - 1; u != y + 2; ++u, ++row) {
+      if (u > kLastPart || v > kLastPart) continue;  // the space that a key tells ends here
+      const std::uint64_t begin_of_row = u << kPartBits | v << (2 * kPartBits);
+      const std::uint64_t first = begin_of_row | (x - (x > 0 ? 1 : 0)),
+                          last = begin_of_row | std::min(x + 1, kLastPart);
+      std::size_t at = (*rows)[row];
+      while (at < cells_.size() && cells_[at].key < first) ++at;
+      (*rows)[row] = at;
+      if (at == cells_.size() || cells_[at].key > last) continue;
+      const std::uint32_t begin = cells_[at].begin;
+      while (at < cells_.size() && cells_[at].key <= last) ++at;
+      append_run(sorted_, begin, cells_[at - 1].end, points);
     }
 }
 
@@ -89,14 +96,6 @@ RadiusSearch::Neighborhood RadiusSearch::select(const Points& points, const Eige
     kept += squared <= squared_radius_ ? 1 : 0;
   }
   return {{index, kept}, {distances, kept}};
-}
-
-std::optional<RadiusSearch::Neighbor> RadiusSearch::nearest(const Eigen::Vector3f& query) const {
-  std::optional<Neighbor> best;
-  for_each(query, [&](std::uint32_t index, float squared) {
-    if (!best || squared < best->squared_distance) best = Neighbor{index, squared};
-  });
-  return best;
 }
 
 }  // namespace liloc

@@ -1,6 +1,6 @@
 #pragma once
+#include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,31 +8,14 @@
 
 namespace liloc {
 
-/// Finds the points within one fixed radius. Points are sorted by cells of that radius and the cells hashed, so
-/// a query reads 27 short runs of memory. The points are copied, finite ones only are found; any thread may
-/// query.
+/// Finds the points within one fixed radius of each point. Points are sorted by cells of that radius, x
+/// fastest, so that what lies about a cell are nine runs of memory, and from cell to cell each run only moves
+/// on. The points are copied, finite ones only are found; any thread may ask.
 class RadiusSearch {
  public:
   RadiusSearch(const std::vector<Eigen::Vector3f>& points, double radius_m);
 
   [[nodiscard]] float radius_m() const { return radius_; }
-
-  /// Calls visit(index into the given points, squared distance) for each point within the radius, in fixed
-  /// order.
-  template <class Visit>
-  void for_each(const Eigen::Vector3f& query, Visit&& visit) const {
-    const Eigen::Vector3i centre = cell_of(query, inverse_);
-    for (int dz = -1; dz <= 1; ++dz)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-          const Run* run = find(cell_key(centre + Eigen::Vector3i(dx, dy, dz)));
-          if (run == nullptr) continue;
-          for (std::uint32_t i = run->begin; i < run->end; ++i) {
-            const float squared = (sorted_[i] - query).squaredNorm();
-            if (squared <= squared_radius_) visit(index_[i], squared);
-          }
-        }
-  }
 
   /// Points about a place as arrays, so that the compiler can work on many at a time.
   struct Points {
@@ -44,10 +27,11 @@ class RadiusSearch {
   template <class Visit>
   void for_each_cell(Visit&& visit) const {
     Points candidates;
-    for (const Run& run : table_) {
-      if (run.end == 0) continue;
-      gather(cell_of(sorted_[run.begin], inverse_), &candidates);
-      visit(std::span<const std::uint32_t>(index_.data() + run.begin, run.end - run.begin), candidates);
+    Rows rows{};
+    for (const Cell& cell : cells_) {
+      gather(cell, &rows, &candidates);
+      visit(std::span<const std::uint32_t>(sorted_.index.data() + cell.begin, cell.end - cell.begin),
+            candidates);
     }
   }
 
@@ -56,43 +40,29 @@ class RadiusSearch {
     std::span<const std::uint32_t> index;
     std::span<const float> squared;  ///< distance
   };
-  /// Calls visit(index of a point, its neighborhood) for each point: several times cheaper than to query for
-  /// each, since the points of a cell share their candidates.
+  /// Calls visit(index of a point, its neighborhood) for each point; the points of a cell share their
+  /// candidates.
   template <class Visit>
   void for_each_neighborhood(Visit&& visit) const {
     Points candidates;
+    Rows rows{};
     Selection near;
-    for (const Run& run : table_) {
-      if (run.end == 0) continue;
-      gather(cell_of(sorted_[run.begin], inverse_), &candidates);
-      for (std::uint32_t i = run.begin; i < run.end; ++i) {
-        visit(index_[i], select(candidates, sorted_[i], &near));
-      }
+    for (const Cell& cell : cells_) {
+      gather(cell, &rows, &candidates);
+      for (std::uint32_t i = cell.begin; i < cell.end; ++i)
+        visit(sorted_.index[i], select(candidates, {sorted_.x[i], sorted_.y[i], sorted_.z[i]}, &near));
     }
   }
-
-  struct Neighbor {
-    std::uint32_t index;
-    float squared_distance;
-  };
-  [[nodiscard]] std::optional<Neighbor> nearest(const Eigen::Vector3f& query) const;
 
  private:
-  struct Run {
+  struct Cell {
     std::uint64_t key;
-    std::uint32_t begin, end;
+    std::uint32_t begin, end;  ///< of its points
   };
-  [[nodiscard]] const Run* find(std::uint64_t key) const {
-    std::size_t slot = (key * 0x9E3779B97F4A7C15ULL) >> shift_;
-    while (table_[slot].end != 0) {
-      if (table_[slot].key == key) return &table_[slot];
-      slot = (slot + 1) & (table_.size() - 1);
-    }
-    return nullptr;
-  }
+  using Rows = std::array<std::size_t, 9>;  ///< the first cell in reach of each row about the last cell
 
-  /// The points of a cell and its 26 neighbours.
-  void gather(const Eigen::Vector3i& centre, Points* points) const;
+  /// The points of a cell and its 26 neighbours; `rows` of the cell before, or zeros.
+  void gather(const Cell& cell, Rows* rows, Points* points) const;
   /// Those of them within the radius of `p`, kept in `near`, whose memory only grows.
   struct Selection {
     std::vector<std::uint32_t> index;
@@ -100,11 +70,9 @@ class RadiusSearch {
   };
   [[nodiscard]] Neighborhood select(const Points& points, const Eigen::Vector3f& p, Selection* near) const;
 
-  float radius_, inverse_, squared_radius_;
-  std::vector<Eigen::Vector3f> sorted_;
-  std::vector<std::uint32_t> index_;
-  std::vector<Run> table_;  ///< open addressing; `end` 0 marks an empty slot
-  int shift_ = 0;
+  float radius_, squared_radius_;
+  Points sorted_;            ///< by cell
+  std::vector<Cell> cells_;  ///< by rising key
 };
 
 }  // namespace liloc

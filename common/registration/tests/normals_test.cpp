@@ -4,6 +4,8 @@
 #include <pcl/features/normal_3d.h>
 #include <pcl/search/kdtree.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "common/geometry/pcl.hpp"
@@ -51,19 +53,39 @@ TEST_P(NormalLaw, NormalsFaceTheSensor) {
   for (const auto& n : below.normals) EXPECT_LT(n.z(), 0);
 }
 
-TEST_P(NormalLaw, RadiusSearchFindsWhatBruteForceFinds) {
-  const Cloud sheet = wavy_sheet(GetParam());
+TEST_P(NormalLaw, NeighborhoodsAreWhatBruteForceFinds) {
+  Cloud sheet = wavy_sheet(GetParam());
+  sheet.points.emplace_back(NAN, 0.0F, 0.0F);
+  sheet.points.emplace_back(1e30F, -1e30F, 0.0F);  // beyond what a cell's key can tell
   const RadiusSearch search(sheet.points, 0.15);
-  for (std::size_t q = 0; q < sheet.size(); q += 37) {
-    std::size_t found = 0, expected = 0;
-    search.for_each(sheet.points[q], [&](std::uint32_t, float) { ++found; });
-    for (const auto& p : sheet.points) expected += (p - sheet.points[q]).norm() <= 0.15F;
-    EXPECT_EQ(found, expected);
-    EXPECT_EQ(search.nearest(sheet.points[q])->index, q);
-  }
+  std::size_t visited = 0;
+  search.for_each_neighborhood([&](std::uint32_t i, const RadiusSearch::Neighborhood& near) {
+    ++visited;
+    const Eigen::Vector3f& p = sheet.points[i];
+    if (std::abs(p.x()) > 2) return;
+    std::vector<std::uint32_t> expected, found(near.index.begin(), near.index.end());
+    for (std::uint32_t k = 0; k < sheet.size(); ++k)
+      if ((sheet.points[k] - p).norm() <= 0.15F) expected.push_back(k);
+    std::ranges::sort(found);
+    ASSERT_EQ(found, expected);
+    for (std::size_t k = 0; k < near.index.size(); ++k)
+      ASSERT_NEAR(std::sqrt(near.squared[k]), (sheet.points[near.index[k]] - p).norm(), 1e-5F);
+  });
+  EXPECT_EQ(visited, sheet.size() - 1) << "all but what is no number";
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, NormalLaw, testing::Range(1U, 5U));
+
+TEST(Normals, OfALineLieAcrossIt) {
+  Cloud line;
+  for (int i = 0; i < 40; ++i) line.points.emplace_back(0.03F * static_cast<float>(i), 1.0F, 2.0F);
+  const Cloud ours = with_normals(line, {0, 0, 0});
+  ASSERT_EQ(ours.size(), line.size());
+  for (const Eigen::Vector3f& n : ours.normals) {
+    EXPECT_NEAR(n.norm(), 1.0F, 1e-4F);
+    EXPECT_NEAR(n.x(), 0.0F, 1e-3F);
+  }
+}
 
 TEST(Normals, PointsThatHangInTheAirAreDropped) {
   Cloud sheet = wavy_sheet(1);

@@ -2,16 +2,18 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <csignal>
-#include <ctime>
+#include <chrono>
 #include <exception>
 
 #include "client/app/daemon.hpp"
+#include "common/base/stop_signals.hpp"
 
 namespace liloc {
 namespace {
 
-constexpr std::time_t kSummaryEveryS = 10;
+using namespace std::chrono_literals;
+
+constexpr auto kSummaryEvery = 10s;
 
 spdlog::level::level_enum as_spdlog(log::Level level) {
   switch (level) {
@@ -35,23 +37,8 @@ void open_log(log::Level level) {
   log::set_sink([](log::Level l, std::string_view line) { spdlog::log(as_spdlog(l), "{}", line); });
 }
 
-/// Blocked in every thread, and taken by the first alone: a handler could do next to nothing.
-sigset_t block_stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
-}
-
-/// True when a stop signal came within the time.
-bool stop_signal_within(const sigset_t& signals, const timespec& time) {
-  return sigtimedwait(&signals, nullptr, &time) > 0;
-}
-
 int run(int argc, char** argv) {
-  const sigset_t signals = block_stop_signals();  // before any thread is made
+  const StopSignals signals;
   int exit_code = 0;
   auto options = parse_arguments(argc, argv, exit_code);
   if (!options) {
@@ -64,7 +51,7 @@ int run(int argc, char** argv) {
       log::error("{}", ok.error().message);
       return 2;
     }
-  auto daemon = Daemon::start(*options, [&] { return stop_signal_within(signals, {0, 0}); });
+  auto daemon = Daemon::start(*options, [&] { return signals.within(0ms) != 0; });
   if (!daemon) {
     log::error("{}", daemon.error().message);
     return 1;
@@ -72,7 +59,7 @@ int run(int argc, char** argv) {
   if (!*daemon) return 0;  // stopped while it waited for the camera
   log::info("{} listens on domain {}, interface {}", options->client.id, options->client.domain,
             options->client.network_interface);
-  while (!stop_signal_within(signals, {kSummaryEveryS, 0})) log::debug("{}", (*daemon)->summary());
+  while (signals.within(kSummaryEvery) == 0) log::debug("{}", (*daemon)->summary());
   log::info("stopping");
   const Status stopped = (*daemon)->stop();
   log::info("{}", (*daemon)->summary());

@@ -7,9 +7,13 @@
 #include <string_view>
 #include <utility>
 
+#include "common/base/result.hpp"
+
 namespace liloc::log {
 
 enum class Level { debug, info, warning, error };
+/// By its name above; the error lists them.
+[[nodiscard]] Result<Level> level_from(std::string_view name);
 using Sink = std::function<void(Level, std::string_view)>;
 
 /// Replaces the sink (default: nothing is printed). Safe from any thread; the sink must be too.

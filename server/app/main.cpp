@@ -2,9 +2,9 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <csignal>
 #include <exception>
 
+#include "common/base/stop_signals.hpp"
 #include "common/recording/recording.hpp"
 #include "server/app/server.hpp"
 
@@ -32,18 +32,8 @@ void open_log(log::Level level) {
   log::set_sink([as_spdlog](log::Level l, std::string_view line) { spdlog::log(as_spdlog(l), "{}", line); });
 }
 
-/// Blocked in every thread, and taken by sigwait in the first: a handler could do next to nothing.
-sigset_t block_stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
-}
-
 int run(int argc, char** argv) {
-  const sigset_t signals = block_stop_signals();  // before any thread is made
+  const StopSignals signals;
   int exit_code = 0;
   const auto options = parse_arguments(argc, argv, exit_code);
   if (!options) {
@@ -63,9 +53,7 @@ int run(int argc, char** argv) {
   }
   log::info("{} serves {} with {} LiDARs on domain {}, interface {}", options->service.server_id,
             options->site_file, site->global_lidars.size(), options->seat.domain, options->seat.interface);
-  int received = 0;
-  sigwait(&signals, &received);
-  log::info("signal {}: stopping", received);
+  log::info("signal {}: stopping", signals.wait());
   (*server)->stop();
   const auto last = (*server)->status();
   log::info("stopped after {:.0f} s: {} answered, {} verified, {} refused", last.uptime_s, last.answered,

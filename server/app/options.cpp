@@ -1,7 +1,6 @@
 #include "server/app/options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <map>
 
 #include "server/app/site_state.hpp"
 
@@ -9,7 +8,7 @@ namespace liloc {
 namespace {
 
 struct Raw {
-  std::string method = "liloc", verify, icp, state;
+  std::string method = "liloc", verify, icp, state, log_level = "info";
   int hold_ms = 100;
   bool standby = false;
 };
@@ -71,13 +70,7 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   load->add_option("--hold-ms", raw.hold_ms, "Longest wait for the ceiling's next frame, ms")
       ->capture_default_str();
 
-  const std::map<std::string, log::Level> levels = {{"debug", log::Level::debug},
-                                                    {"info", log::Level::info},
-                                                    {"warning", log::Level::warning},
-                                                    {"error", log::Level::error}};
-  app.add_option("--log-level", options.log_level, "debug, info, warning or error")
-      ->transform(CLI::CheckedTransformer(levels, CLI::ignore_case))
-      ->default_str("info");
+  app.add_option("--log-level", raw.log_level, "debug, info, warning or error")->capture_default_str();
   app.add_option("--status-every", options.status_every_s, "Seconds between status lines; 0: none")
       ->check(CLI::Range(0.0, 86'400.0))
       ->capture_default_str();
@@ -114,6 +107,9 @@ Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
   const auto method = method_from(raw.method);
   if (!method) return tl::unexpected(method.error());
   options.localizer.method = *method;
+  const auto level = log::level_from(raw.log_level);
+  if (!level) return fail("--log-level: {}", level.error().message);
+  options.log_level = *level;
   settle_standby(app, raw, options);
   if (const auto set = set_variants(raw, options.localizer); !set) return tl::unexpected(set.error());
   options.service.hold = std::chrono::milliseconds(raw.hold_ms);

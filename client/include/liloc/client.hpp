@@ -7,7 +7,8 @@
 //   auto made = liloc::client::Client::create(options);
 //   if (!made) { puts(made.error().c_str()); return 1; }
 //   liloc::client::Client& client = *made.value();
-//   client.push_depth(units, 640, 480, stamp_ns);   // from the driver's callback: returns at once
+//   // from the driver's callback; returns at once:
+//   if (auto taken = client.push_depth(units, 640, 480, stamp_ns); !taken) puts(taken.error().c_str());
 //   if (auto pose = client.newest(); pose.T_map_sensor) drive(*pose.T_map_sensor);
 //
 // Metres and radians; stamps are nanoseconds of the device's clock. Optical frame: x right, y down, z forward.

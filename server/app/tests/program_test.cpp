@@ -60,6 +60,7 @@ TEST(Program, BadUsageExitsWithTwo) {
   EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--method", "magic"})), 2);
   EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--method", "paper", "--verify", "tracks"})), 2);
   EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--icp", "plain"})), 2);
+  EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--log-level", "loud"})), 2);
   EXPECT_EQ(exit_code(spawn({"--site", "x.json", "--domain", "999"})), 2);
   EXPECT_EQ(exit_code(spawn({"--site", "no/such/site.json"})), 2);
 }

@@ -39,11 +39,20 @@ bool Odometry::consistent(const ScanMatch& match, const DepthImage& image) const
          view.refuted_share() <= options_.max_refuted_share;
 }
 
+bool Odometry::unhidden(const ScanMatch& match, const DepthImage& image) const {
+  const auto view = map_.compare(match.T_map_sensor, image, options_.camera, options_.max_range_m);
+  return view.hidden <= view.agree + view.through;
+}
+
 std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vector<Surfel>& frame,
                                          const MotionGuess& guess, OdometryStep& step) {
   auto found = match_scan(map_, frame, guess, image.stamp_ns);
   if (found && guess.sd_rad() > kVagueRad && found->overlap < kPoorOverlap)
-    found = match_turned(map_, frame, guess, image.stamp_ns);
+    for (ScanMatch& wide : match_widely(map_, frame, guess, image.stamp_ns))
+      if (believable(wide, guess, image) && unhidden(wide, image)) {
+        found = std::move(wide);
+        break;
+      }
   if (found)
     log::debug(
         "match: overlap {:.2f} paired {:.2f} rmse {:.1f} mm, {} unobserved, {} iterations, {:.1f} mm {:.3f} "

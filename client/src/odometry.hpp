@@ -60,6 +60,8 @@ class Odometry {
                                 const DepthImage& image) const;
   /// The same where there is no guess: the image must not look through what the map holds.
   [[nodiscard]] bool consistent(const ScanMatch& match, const DepthImage& image) const;
+  /// Whether most of what the map holds in view is seen: what peeps out beside somebody fits in many places.
+  [[nodiscard]] bool unhidden(const ScanMatch& match, const DepthImage& image) const;
   /// From the guess, and by features where that fails.
   [[nodiscard]] std::optional<ScanMatch> match(const DepthImage& image, const std::vector<Surfel>& frame,
                                                const MotionGuess& guess, OdometryStep& step);

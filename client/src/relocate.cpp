@@ -1,6 +1,8 @@
 #include "client/src/relocate.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 #include "common/registration/feature_search.hpp"
 
@@ -9,8 +11,13 @@ namespace {
 
 constexpr int kIterations = 20'000;
 constexpr std::size_t kProposals = 12, kSparsePoints = 300;
-constexpr double kTurnsRad[] = {0.2, -0.2, 0.4, -0.4};  // a match finds its way from half of such a step
-constexpr double kStartSdRad = 0.1, kStartSdM = 0.15;   // of a proposal: what three matched points leave open
+constexpr double kTurnStepRad = 0.2, kMostTurnRad = 0.8;  // a match finds its way from half of such a step
+constexpr double kShiftStepM = 0.3, kMostShiftM = 0.6;
+constexpr double kReachSds = 2;        // of the guess, that starts are spread over
+constexpr double kPriorWeight = 0.01;  // overlap that a match one such deviation off must gain
+constexpr int kQuickIterations = 3;
+constexpr std::size_t kQuickSurfels = 100, kFullMatches = 5;
+constexpr double kStartSdRad = 0.1, kStartSdM = 0.15;  // of a proposal: what three matched points leave open
 
 Cloud cloud_of(const std::vector<Surfel>& frame) {
   Cloud cloud;
@@ -29,6 +36,54 @@ Cloud every_nth(const Cloud& cloud, std::size_t most) {
     thin.normals.push_back(cloud.normals[i]);
   }
   return thin;
+}
+
+/// Best first: by overlap, less what the guess says against the match.
+void sort_by_merit(std::vector<ScanMatch>& matches, const MotionGuess& guess) {
+  const Matrix6d certainty = guess.covariance.inverse();
+  const auto merit = [&](const ScanMatch& match) {
+    Vector6d off;
+    off.head<3>() = so3_log(match.T_map_sensor.linear() * guess.T_map_sensor.linear().transpose());
+    off.tail<3>() = match.T_map_sensor.translation() - guess.T_map_sensor.translation();
+    return match.overlap - kPriorWeight * off.dot(certainty * off);
+  };
+  std::ranges::stable_sort(matches, std::greater{}, merit);
+}
+
+/// Numbers of steps to either side that reach as far as the guess may be off.
+int steps_to(double reach, double most, double step) {
+  return static_cast<int>(std::ceil(std::min(reach, most) / step - 0.5));
+}
+
+/// Where matches of all surfels should start, best first.
+std::vector<Pose> best_starts(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
+                              StampNs now_ns) {
+  const int turns = steps_to(kReachSds * guess.sd_rad(), kMostTurnRad, kTurnStepRad);
+  const int shifts = steps_to(kReachSds * guess.sd_m(), kMostShiftM, kShiftStepM);
+  ScanMatchOptions quick;
+  quick.max_iterations = kQuickIterations;
+  quick.max_surfels = kQuickSurfels;
+  std::vector<ScanMatch> matches;
+  for (int turn = -turns; turn <= turns; ++turn)
+    for (int x = -shifts; x <= shifts; ++x)
+      for (int z = -shifts; z <= shifts; ++z) {
+        Pose T_guess_start = Pose::Identity();
+        T_guess_start.linear() = so3_exp({0, kTurnStepRad * turn, 0});
+        T_guess_start.translation() = kShiftStepM * Eigen::Vector3d(x, 0, z);
+        quick.start = guess.T_map_sensor * T_guess_start;
+        if (auto match = match_scan(map, frame, guess, now_ns, quick)) matches.push_back(std::move(*match));
+      }
+  sort_by_merit(matches, guess);
+  std::vector<Pose> starts;
+  for (const ScanMatch& match : matches) {
+    if (starts.size() == kFullMatches) break;
+    const bool known = std::ranges::any_of(starts, [&](const Pose& T) {
+      return distance_m(T, match.T_map_sensor) < kShiftStepM / 2 &&
+             angle_between_rad(T, match.T_map_sensor) < kTurnStepRad / 2;
+    });
+    if (!known) starts.push_back(match.T_map_sensor);
+  }
+  return starts;
 }
 
 }  // namespace
@@ -58,16 +113,16 @@ std::vector<ScanMatch> relocate(const LocalMap& map, const std::vector<Surfel>& 
   return matches;
 }
 
-Result<ScanMatch> match_turned(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
-                               StampNs now_ns) {
-  auto best = match_scan(map, frame, guess, now_ns);
-  for (const double turn : kTurnsRad) {
-    MotionGuess turned = guess;
-    turned.T_map_sensor.linear() *= so3_exp({0, turn, 0});
-    auto match = match_scan(map, frame, turned, now_ns);
-    if (match && match->settled && match->overlap > best->overlap) best = std::move(match);
+std::vector<ScanMatch> match_widely(const LocalMap& map, const std::vector<Surfel>& frame,
+                                    const MotionGuess& guess, StampNs now_ns) {
+  std::vector<ScanMatch> matches;
+  for (const Pose& start : best_starts(map, frame, guess, now_ns)) {
+    ScanMatchOptions options;
+    options.start = start;
+    if (auto match = match_scan(map, frame, guess, now_ns, options)) matches.push_back(std::move(*match));
   }
-  return best;
+  sort_by_merit(matches, guess);
+  return matches;
 }
 
 }  // namespace liloc

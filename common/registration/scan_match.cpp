@@ -196,7 +196,7 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
   if (sources.surfels.empty())
     return fail("scan match: none of {} surfels is flat enough for a normal", frame.size());
   ScanMatch match;
-  match.T_map_sensor = guess.T_map_sensor;
+  match.T_map_sensor = options.start.value_or(guess.T_map_sensor);
   const Matrix6d certainty = guess.covariance.inverse();
   match.information = certainty;
   std::vector<Pair> pairs;

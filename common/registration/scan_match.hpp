@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "common/base/result.hpp"
@@ -24,6 +25,7 @@ struct MotionGuess {
 
 struct ScanMatchOptions {
   int max_iterations = 12;
+  std::optional<Pose> start;       ///< where the steps begin; empty: at the guess, which stays the prior
   std::size_t max_surfels = 1500;  ///< of the frame; more are thinned evenly
   double min_flatness = 0.4;       ///< surfels below have no trustworthy normal
   double stop_rad = 2e-5, stop_m = 5e-5;

@@ -66,7 +66,8 @@ PairResult by_liloc(const FramePair& pair, double voxel_m) {
   const MotionGuess guess(pair.T_target_source_guess, std::min(0.3, kGuessSdRad * doubt),
                           std::min(0.3, kGuessSdM * doubt));
   auto match = match_scan(map, source, guess, 2);
-  if (match && match->overlap < kPoorOverlap) match = match_turned(map, source, guess, 2);
+  if (match && match->overlap < kPoorOverlap)
+    if (const auto wide = match_widely(map, source, guess, 2); !wide.empty()) match = wide.front();
   if (match && match->overlap < kPoorOverlap) {
     const auto found = relocate(map, source, 2, 1);
     if (!found.empty() && found.front().overlap > match->overlap) match = found.front();

@@ -57,6 +57,37 @@ TEST(EncodeWithin, TakesAsManyPointsAsFit) {
   EXPECT_FALSE(encode_within(10, 4000, 0.05, thinned));
 }
 
+/// Distance from each point to the nearest of the others, root mean square.
+double rms_to(const Cloud& points, const Cloud& others) {
+  double squares = 0;
+  for (const Eigen::Vector3f& p : points.points) {
+    float nearest = std::numeric_limits<float>::max();
+    for (const Eigen::Vector3f& o : others.points) nearest = std::min(nearest, (p - o).squaredNorm());
+    squares += static_cast<double>(nearest);
+  }
+  return std::sqrt(squares / static_cast<double>(points.size()));
+}
+
+TEST(EncodeWithin, FiveKeyframesTake15KilobytesAtOneAndAHalfMillimetres) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const auto room = scene::furnished_room(seed);
+    Cloud keyframes;
+    for (int i = 0; i < 100; i += 20) {
+      const Cloud seen = *depth_to_cloud(frame_at(room, i), scene::small_camera());
+      for (const Eigen::Vector3f& p : seen.points)
+        keyframes.points.push_back(walk(time_of(i)).cast<float>() * p);
+    }
+    const auto thinned = [&](std::size_t most) { return voxel_downsample(keyframes, 0.05, most); };
+    const auto code = encode_within(15'000, kMaxCodecPoints, 0.05, thinned);
+    ASSERT_TRUE(code) << code.error().message;
+    EXPECT_LE(code->bytes.size(), 15'000U);
+    const auto decoded = decode(*code);
+    ASSERT_TRUE(decoded);
+    EXPECT_GT(decoded->size(), 8000U) << "seed " << seed;
+    EXPECT_LT(rms_to(*decoded, thinned(decoded->size())), 0.0015) << "seed " << seed;
+  }
+}
+
 /// What all requests of a walk take, and the newest.
 struct Sent {
   std::size_t most_bytes = 0, requests = 0;

@@ -36,5 +36,6 @@ void add_replay(CLI::App& app, int& exit_code);
 void add_align(CLI::App& app, int& exit_code);
 void add_sim(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
+void add_doctor(CLI::App& app, int& exit_code);
 
 }  // namespace liloc::toolbox

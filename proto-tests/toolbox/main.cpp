@@ -6,8 +6,9 @@
 namespace {
 
 int run(int argc, char** argv) {
-  CLI::App app("LiLoc's toolbox: live demo, recordings replayed and judged, simulated sites, clouds aligned",
-               "liloc");
+  CLI::App app(
+      "LiLoc's toolbox: live demo, recordings replayed and judged, simulated sites, clouds aligned, ills found",
+      "liloc");
   app.set_version_flag("--version", LILOC_VERSION);
   app.require_subcommand(0, 1);
   int exit_code = liloc::toolbox::kDone;
@@ -15,6 +16,7 @@ int run(int argc, char** argv) {
   liloc::toolbox::add_replay(app, exit_code);
   liloc::toolbox::add_sim(app, exit_code);
   liloc::toolbox::add_align(app, exit_code);
+  liloc::toolbox::add_doctor(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& shown) {  // --help, --version

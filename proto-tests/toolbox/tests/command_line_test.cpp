@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "common/recording/files.hpp"
+#include "common/wire/status.hpp"
 #include "proto-tests/replay/tests/small_recording.hpp"
 #include "proto-tests/replay/tests/temp_folder.hpp"
 
@@ -49,7 +51,7 @@ class CommandLine : public testing::Test {
 };
 
 TEST_F(CommandLine, EverySubcommandHasHelp) {
-  for (const char* name : {"", "demo ", "replay ", "sim ", "align "}) {
+  for (const char* name : {"", "demo ", "replay ", "sim ", "align ", "doctor "}) {
     const Outcome outcome = liloc(std::string(name) + "--help");
     EXPECT_EQ(outcome.exit_code, 0) << name;
     EXPECT_THAT(outcome.out, HasSubstr("Usage"));
@@ -65,6 +67,26 @@ TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
   expect_complaint(liloc("sim " + path("rec") + " --lidars 99"), 2, "lidars");
   expect_complaint(liloc("align only-one.ply"), 2, "TARGET");
   EXPECT_FALSE(fs::exists(path("rec")));
+}
+
+TEST_F(CommandLine, DoctorTellsASilentDomainFromAHealthyServer) {
+  const Outcome silent = liloc("doctor --domain 148 --seconds 0.3");
+  EXPECT_EQ(silent.exit_code, 1);
+  EXPECT_THAT(silent.out, HasSubstr("FAIL  no server is heard"));
+
+  const auto seat = wire::Participant::create({.domain = 148, .role = wire::Role::server});
+  ASSERT_TRUE(seat) << seat.error().message;
+  const auto publisher = wire::StatusPublisher::create(*seat);
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  wire::ServerStatus status;
+  status.server_id = "edge1";
+  const std::jthread server([&](const std::stop_token& stop) {
+    for (; !stop.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(50)))
+      EXPECT_TRUE(publisher->publish(status));
+  });
+  const Outcome heard = liloc("doctor --domain 148 --seconds 60");
+  EXPECT_EQ(heard.exit_code, 0) << heard.out;
+  EXPECT_THAT(heard.out, HasSubstr("ok    edge1: up for"));
 }
 
 TEST_F(CommandLine, ARecordingThatCannotBeReadIsExitCodeTwoAndLeavesNothing) {

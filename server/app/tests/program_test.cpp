@@ -87,9 +87,9 @@ TEST(Program, ReadsItsOptionsFromAFile) {
 
 TEST(Program, ASecondServerInADomainOfAHostFails) {
   const fs::path site = site_file();
-  const pid_t first = spawn({"--site", site.string(), "--domain", "144"});
+  const pid_t first = spawn({"--site", site.string(), "--domain", "147"});
   std::this_thread::sleep_for(600ms);
-  EXPECT_EQ(exit_code(spawn({"--site", site.string(), "--domain", "144"})), 1);
+  EXPECT_EQ(exit_code(spawn({"--site", site.string(), "--domain", "147"})), 1);
   kill(first, SIGTERM);
   EXPECT_EQ(exit_code(first), 0);
   fs::remove(site);

@@ -1,6 +1,6 @@
 #include "client/app/daemon.hpp"
 
-#include <cmath>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -91,101 +91,15 @@ Status Daemon::open_client() {
   return {};
 }
 
-Status Daemon::subscribe_frames() {
-  const SensorTopics& topics = options_.topics;
-  if (topics.use_points)
-    return wire::subscribe_points_at(*sensors_, topics.points,
-                                     [this](const Result<wire::StampedCloud>& cloud) { take_points(cloud); });
-  if (auto ok = wire::subscribe_depth_at(*sensors_, topics.depth, options_.client.camera.depth_scale_m,
-                                         [this](const Result<DepthImage>& image) { take_depth(image); });
-      !ok)
-    return ok;
-  return wire::subscribe_camera_info_at(*sensors_, topics.camera_info, [this](const Result<Camera>& camera) {
-    if (camera) check_camera(*camera);
-  });
-}
-
 Status Daemon::subscribe() {
   auto dispatcher = wire::Dispatcher::create(*participant_);
   if (!dispatcher) return tl::unexpected(dispatcher.error());
   sensors_ = std::move(*dispatcher);
-  const SensorTopics& topics = options_.topics;
-  if (auto ok = subscribe_frames(); !ok) return ok;
-  if (options_.client.T_imu_sensor)
-    if (auto ok = wire::subscribe_imu_at(*sensors_, topics.imu,
-                                         [this](const Result<ImuSample>& sample) { take_imu(sample); });
-        !ok)
-      return ok;
-  if (!topics.odometry.empty())
-    if (auto ok = wire::subscribe_odometry_at(
-            *sensors_, topics.odometry,
-            [this](const Result<wire::StampedOdometry>& odometry) { take_odometry(odometry); });
-        !ok)
-      return ok;
+  feed_ = std::make_unique<SensorFeed>(options_, *client_);
+  if (auto ok = feed_->subscribe(*sensors_); !ok) return ok;
   if (ros_) sensors_->every(1000ms, [this] { diagnose(); });
   sensors_->start();
   return {};
-}
-
-/// At most one line in five seconds: a misconfigured driver sends a bad sample thirty times a second.
-void Daemon::complain(const std::string& what) {
-  ++malformed_;
-  const auto now = std::chrono::steady_clock::now();
-  if (now - complained_ < 5s) return;
-  complained_ = now;
-  log::warning("{} ({} samples refused so far)", what, malformed_.load());
-}
-
-void Daemon::take_depth(const Result<DepthImage>& image) {
-  if (!image) return complain(image.error().message);
-  const auto taken = client_->push_depth(image->units.data(), image->width, image->height, image->stamp_ns);
-  if (!taken) complain(taken.error());
-}
-
-void Daemon::take_imu(const Result<ImuSample>& sample) {
-  if (!sample) return complain(sample.error().message);
-  const Eigen::Vector3d &w = sample->angular_velocity_rad_s, &f = sample->specific_force_m_s2;
-  const auto taken = client_->push_imu(sample->stamp_ns, {w.x(), w.y(), w.z()}, {f.x(), f.y(), f.z()});
-  if (!taken) complain(taken.error());
-}
-
-void Daemon::take_points(const Result<wire::StampedCloud>& cloud) {
-  if (!cloud) return complain(cloud.error().message);
-  const auto& points = cloud->cloud_sensor.points;
-  if (points.empty()) return complain("a cloud without a finite point");
-  const auto taken = client_->push_points(points.front().data(), points.size(), cloud->stamp_ns);
-  if (!taken) complain(taken.error());
-}
-
-void Daemon::take_odometry(const Result<wire::StampedOdometry>& odometry) {
-  if (!odometry) return complain(odometry.error().message);
-  const std::string& expected = options_.ros.names.odom_frame;
-  if (odometry->frame_id != expected && !std::exchange(frame_differs_, true))
-    log::warning("odometry is in frame \"{}\", tf is told of \"{}\": set --odom-frame", odometry->frame_id,
-                 expected);
-  const Eigen::Vector3d t = odometry->T_odom_base.translation();
-  const Eigen::Quaterniond q(odometry->T_odom_base.linear());
-  std::optional<std::array<double, 36>> covariance;
-  if (!odometry->covariance.isZero()) {  // ROS: all zero says unknown
-    covariance.emplace();
-    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance->data()) = odometry->covariance;
-  }
-  const auto taken = client_->push_odometry(odometry->stamp_ns,
-                                            {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}}, covariance);
-  if (!taken) complain(taken.error());
-}
-
-void Daemon::check_camera(const Camera& camera) {
-  const client::Camera& c = options_.client.camera;
-  const double off = std::max({std::abs(camera.fx - c.fx), std::abs(camera.fy - c.fy),
-                               std::abs(camera.cx - c.cx), std::abs(camera.cy - c.cy)});
-  const bool differs = camera.width != c.width || camera.height != c.height || off > 1.0;
-  if (differs && !camera_differs_)
-    log::warning(
-        "camera_info ({}x{}, fx {:.1f}) differs from the intrinsics in use ({}x{}, fx {:.1f}): correct {}",
-        camera.width, camera.height, camera.fx, c.width, c.height, c.fx,
-        options_.device_file.empty() ? "the driver" : options_.device_file);
-  camera_differs_ = differs;
 }
 
 void Daemon::diagnose() {

@@ -1,16 +1,16 @@
 #include "common/wire/server_link.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <set>
-#include <shared_mutex>
 
 #include "common/base/ids.hpp"
 #include "common/base/log.hpp"
 #include "common/wire/convert.hpp"
 #include "common/wire/convert_spot.hpp"
+#include "common/wire/reply_writers.hpp"
 #include "common/wire/topics.hpp"
 #include "common/wire/typed.hpp"
 
@@ -35,43 +35,26 @@ std::optional<std::string> client_of(std::int32_t reader, dds_instance_handle_t 
   return client;
 }
 
-struct Client {
-  Entity publisher, writer;
-  std::set<dds_instance_handle_t> publications;
-};
-
 }  // namespace
 
 struct ServerLink::Impl {
+  Impl(std::int32_t participant, ServerLinkOptions o, ServerCallbacks c)
+      : options(std::move(o)), callbacks(std::move(c)), writers(participant, options.max_clients) {}
+
   void take_request(const liloc_msg_SpotRequest& message, const dds_sample_info_t& info);
   void refresh_matches();
   void admit(dds_instance_handle_t publication);
   void dismiss(dds_instance_handle_t publication);
-  [[nodiscard]] Result<Client> make_client(const std::string& client_id) const;
 
-  ServerLinkOptions options;
-  ServerCallbacks callbacks;
-  std::int32_t participant = 0, reader = 0;  // the dispatcher owns the reader
+  const ServerLinkOptions options;
+  const ServerCallbacks callbacks;
+  ReplyWriters writers;
+  std::int32_t reader = 0;  // the dispatcher owns it
   Entity subscriber;
   std::atomic<bool> closed = false;
   std::map<dds_instance_handle_t, std::string> bound;  // publication -> client id; of the dispatcher's thread
   std::set<dds_instance_handle_t> strangers;           // matched, but bound to nobody
-  mutable std::shared_mutex mutex;                     // guards clients: workers reply while matches change
-  std::map<std::string, Client> clients;
 };
-
-Result<Client> ServerLink::Impl::make_client(const std::string& client_id) const {
-  Client client;
-  const Qos partition = partition_qos(client_partition(client_id));
-  auto publisher =
-      checked(dds_create_publisher(participant, partition.get(), nullptr), "publisher of " + client_id);
-  if (!publisher) return tl::unexpected(publisher.error());
-  auto writer = make_writer<liloc_msg_SpotReply>(participant, publisher->handle(), kReplyTopic, kept_qos(8));
-  if (!writer) return tl::unexpected(writer.error());
-  client.publisher = std::move(*publisher);
-  client.writer = std::move(*writer);
-  return client;
-}
 
 void ServerLink::Impl::admit(dds_instance_handle_t publication) {
   const auto id = client_of(reader, publication);
@@ -80,44 +63,24 @@ void ServerLink::Impl::admit(dds_instance_handle_t publication) {
     log::warning("a writer of {} is not in one partition robots/<id>; it is not served", kRequestTopic);
     return;
   }
-  bool joined = false;
-  {
-    const std::unique_lock lock(mutex);
-    auto known = clients.find(*id);
-    if (known == clients.end()) {
-      if (clients.size() >= options.max_clients) {
-        strangers.insert(publication);
-        log::warning("client {} is not served: {} clients are the limit; raise max_clients", *id,
-                     clients.size());
-        return;
-      }
-      auto client = make_client(*id);
-      if (!client) {
-        strangers.insert(publication);
-        log::error("client {} is not served: {}", *id, client.error().message);
-        return;
-      }
-      known = clients.emplace(*id, std::move(*client)).first;
-      joined = true;
-    }
-    known->second.publications.insert(publication);
+  const auto joined = writers.open(*id);
+  if (!joined) {
+    strangers.insert(publication);
+    log::warning("client {} is not served: {}", *id, joined.error().message);
+    return;
   }
   bound[publication] = *id;
-  if (joined && callbacks.on_join) callbacks.on_join(*id);
+  if (*joined && callbacks.on_join) callbacks.on_join(*id);
 }
 
 void ServerLink::Impl::dismiss(dds_instance_handle_t publication) {
   if (callbacks.on_gone) callbacks.on_gone(publication);
   const auto node = bound.extract(publication);
   if (!node) return;
-  {
-    const std::unique_lock lock(mutex);
-    const auto client = clients.find(node.mapped());
-    client->second.publications.erase(publication);
-    if (!client->second.publications.empty()) return;
-    clients.erase(client);
-  }
-  if (callbacks.on_leave) callbacks.on_leave(node.mapped());
+  const std::string& id = node.mapped();
+  if (std::ranges::any_of(bound, [&](const auto& other) { return other.second == id; })) return;
+  writers.close(id);
+  if (callbacks.on_leave) callbacks.on_leave(id);
 }
 
 void ServerLink::Impl::refresh_matches() {
@@ -179,16 +142,14 @@ ServerLink::~ServerLink() {
 Result<std::unique_ptr<ServerLink>> ServerLink::create(Dispatcher& dispatcher, ServerLinkOptions options,
                                                        ServerCallbacks callbacks) {
   if (const auto id = valid_id(options.server_id, "server_id"); !id) return tl::unexpected(id.error());
-  auto impl = std::make_shared<Impl>();
-  impl->options = std::move(options);
-  impl->callbacks = std::move(callbacks);
-  impl->participant = dispatcher.participant().handle();
+  const auto participant = dispatcher.participant().handle();
+  auto impl = std::make_shared<Impl>(participant, std::move(options), std::move(callbacks));
   const Qos partition = partition_qos(client_partition("*"));
-  auto subscriber = checked(dds_create_subscriber(impl->participant, partition.get(), nullptr), "subscriber");
+  auto subscriber = checked(dds_create_subscriber(participant, partition.get(), nullptr), "subscriber");
   if (!subscriber) return tl::unexpected(subscriber.error());
   // All clients share one instance: a key would let a stranger fill the table of instances.
-  auto reader = make_reader<liloc_msg_SpotRequest>(impl->participant, subscriber->handle(), kRequestTopic,
-                                                   reliable_qos(1024));
+  auto reader =
+      make_reader<liloc_msg_SpotRequest>(participant, subscriber->handle(), kRequestTopic, reliable_qos(1024));
   if (!reader) return tl::unexpected(reader.error());
   impl->reader = reader->handle();
   impl->subscriber = std::move(*subscriber);
@@ -215,16 +176,11 @@ Result<std::unique_ptr<ServerLink>> ServerLink::create(Dispatcher& dispatcher, S
 Status ServerLink::reply(const Sender& to, SpotReply reply) {
   reply.server_id = impl_->options.server_id;
   reply.client_id = to.client_id;
-  const auto message = to_wire(reply, to.session);
-  const std::shared_lock lock(impl_->mutex);
-  const auto client = impl_->clients.find(to.client_id);
-  if (client == impl_->clients.end()) return fail("client {} has left", to.client_id);
-  return check(dds_write(client->second.writer.handle(), &message), "write of a reply to " + to.client_id);
+  return impl_->writers.write(to.client_id, to_wire(reply, to.session));
 }
 
 std::size_t ServerLink::clients() const {
-  const std::shared_lock lock(impl_->mutex);
-  return impl_->clients.size();
+  return impl_->writers.clients();
 }
 
 }  // namespace liloc::wire

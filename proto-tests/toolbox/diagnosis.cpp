@@ -63,7 +63,7 @@ Finding check_setting(const std::string& name, std::optional<long> value, long w
   if (!value) return {Verdict::doubtful, name + " cannot be read", "look at it by hand: sysctl " + name};
   if (*value >= wanted) return {Verdict::good, fmt::format("{} is {}", name, *value)};
   return {Verdict::doubtful, fmt::format("{} is {}, bursts of depth frames may be lost", name, *value),
-          fmt::format("sysctl -w {}={}, or deploy/sysctl.d for good", name, wanted)};
+          fmt::format("sysctl -w {}={}, or 60-liloc.conf for good", name, wanted)};
 }
 
 std::vector<Finding> check_servers(const std::vector<wire::ServerStatus>& servers,

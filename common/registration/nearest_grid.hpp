@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/geometry/cloud.hpp"
+#include "common/registration/cloud_change.hpp"
 
 namespace liloc {
 
@@ -17,6 +17,9 @@ class NearestGrid {
   NearestGrid() = default;
   /// Non-finite points are left out.
   NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell_m, double reach_m);
+  /// The same grid, sooner, from that of the points before, for the same cell and reach.
+  NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell_m, double reach_m,
+              const NearestGrid& before, const CloudChange& change);
 
   /// Index of a point whose distance is at most half a cell diagonal above the least, or kNone beyond reach.
   [[nodiscard]] std::int32_t nearest(const Eigen::Vector3f& p) const {
@@ -39,10 +42,16 @@ class NearestGrid {
   [[nodiscard]] static std::size_t cell_index(const Eigen::Vector3i& cell) {
     return static_cast<std::size_t>((cell.z() & 7) << 6 | (cell.y() & 7) << 3 | (cell.x() & 7));
   }
+  void lay_out(const std::vector<Eigen::Vector3f>& points, double cell_m, double reach_m);
+  void take_over(const NearestGrid& before, const std::vector<std::int32_t>& now);
   std::int32_t& cell_at(const Eigen::Vector3i& cell);
-  void stamp(const std::vector<Eigen::Vector3f>& points, std::int32_t index, float cell, float reach);
+  template <class Visit>
+  void for_each_in_reach(const Eigen::Vector3f& point, const Visit& visit) const;
+  [[nodiscard]] float squared_distance(const Eigen::Vector3i& cell, const Eigen::Vector3f& point) const;
+  void stamp(const std::vector<Eigen::Vector3f>& points, std::size_t index);
+  void fill_left(const std::vector<Eigen::Vector3f>& points, std::size_t index);
 
-  float inverse_ = 1;
+  float cell_ = 0, reach_ = 0, inverse_ = 1;
   Eigen::Vector3f origin_ = Eigen::Vector3f::Zero(), extent_ = Eigen::Vector3f::Zero();  ///< extent in cells
   Eigen::Vector3i block_count_ = Eigen::Vector3i::Zero();
   std::vector<std::int32_t> blocks_;

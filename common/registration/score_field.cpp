@@ -3,39 +3,43 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <numeric>
 
 #include "common/registration/simd.hpp"
 
 namespace liloc {
 namespace {
 
-constexpr double kMostCells = 8e6;    // of a plane
-constexpr float kSameWay = 0.5F;      // cosine up to which a surface enters the plane of a direction
 constexpr float kUpright = 0.7F;      // |z| of a normal from which a surface counts as horizontal
 constexpr double kMostBits = 5.6;     // told by a rare surface: a fiftieth of its layer
 constexpr double kLeastWeight = 0.1;  // of one that is everywhere
 constexpr int kReadAhead = 31;        // rows are read in blocks of 32
 
-/// The direction that a plane stands for.
-Eigen::Vector3f direction_of(int plane) {
-  if (plane == ScoreField::kUp) return Eigen::Vector3f::UnitZ();
-  if (plane == ScoreField::kDown) return -Eigen::Vector3f::UnitZ();
-  const auto azimuth = static_cast<float>(2 * M_PI * plane / ScoreField::kAzimuths);
-  return {std::cos(azimuth), std::sin(azimuth), 0.0F};
+/// What is near in a layer of a plane is worth by its rarity: a hit on what covers the share q of the space
+/// that is known tells -log2(q) bits.
+using Worths = std::array<std::int8_t, ScoreField::kSurface + 1>;
+Worths worths_of(std::ptrdiff_t covered, std::ptrdiff_t known) {
+  const double share = (static_cast<double>(covered) + 1) / (static_cast<double>(known) + 2);
+  const double weight = std::clamp(-std::log2(share) / kMostBits, kLeastWeight, 1.0);
+  Worths worths{};
+  for (std::size_t near = 1; near < worths.size(); ++near)
+    worths[near] = static_cast<std::int8_t>(std::lround(weight * static_cast<double>(near)));
+  return worths;
 }
 
-/// The planes that a surface with this normal enters; null: all.
-void planes_of(const Eigen::Vector3f* normal, std::vector<int>* planes) {
-  static const auto kDirectionOf = [] {
-    std::array<Eigen::Vector3f, ScoreField::kDirections> all;
-    for (int plane = 0; plane < ScoreField::kDirections; ++plane)
-      all[static_cast<std::size_t>(plane)] = direction_of(plane);
-    return all;
-  }();
-  planes->assign(1, ScoreField::kAny);
-  for (int plane = 0; plane < ScoreField::kDirections; ++plane)
-    if (normal == nullptr || normal->dot(kDirectionOf[static_cast<std::size_t>(plane)]) > kSameWay)
-      planes->push_back(plane);
+/// A row of a field: `free` where it is open, else what is near.
+void write_row(const std::int8_t* near, const std::int8_t* open, std::size_t width, std::int8_t free,
+               const Worths& worths, std::int8_t* row) {
+  for (std::size_t x = 0; x < width; ++x) row[x] = static_cast<std::int8_t>(open[x] & free);
+  for (std::size_t x = 0; x < width; ++x) {
+    std::uint64_t eight = 1;  // mostly nothing is near
+    if (x % 8 == 0 && x + 8 <= width) std::memcpy(&eight, near + x, sizeof eight);
+    if (eight == 0)
+      x += 7;
+    else if (near[x] != 0)
+      row[x] = worths[static_cast<std::size_t>(near[x])];
+  }
 }
 
 /// A grid of cells as a kernel sees it.
@@ -74,89 +78,38 @@ int ScoreField::plane_of(const Eigen::Vector3f& normal_map) {
   return x > 0 ? 7 : 5;
 }
 
-ScoreField::ScoreField(const Cloud& cloud_map, const std::vector<SightView>& views, const FieldOptions& options)
-    : pad_(options.pad) {
-  Eigen::AlignedBox3f box;
-  for (const auto& p : cloud_map.points)
-    if (p.allFinite()) box.extend(p);
-  if (box.isEmpty()) return;
-  const Eigen::Vector3d size_m = (box.sizes().array() + 4 * static_cast<float>(options.cell_m)).cast<double>();
-  const double cells = size_m.prod() / std::pow(options.cell_m, 3);
-  cell_ = cells > kMostCells ? options.cell_m * std::cbrt(cells / kMostCells) : options.cell_m;
+ScoreField::ScoreField(const FieldLayers& layers, const FieldOptions& options) : pad_(options.pad) {
+  if (layers.empty()) return;
+  cell_ = layers.cell_m();
   inverse_ = static_cast<float>(1.0 / cell_);
-  origin_ = box.min().array() - 2 * static_cast<float>(cell_);
-  size_ = (size_m.cast<float>() * inverse_).array().ceil().cast<int>();
+  origin_ = layers.origin();
+  size_ = layers.size();
   extent_ = size_.cast<float>();
   stride_ = size_.x() + 2 * pad_;
   cells_.assign(index(0, 0, 0, kAny + 1) + kReadAhead, 0);
-  add_surfaces(cloud_map, options.surface_sd_m);
-  mark_free_space(views, options.free);
-  weigh_surfaces();
+  for (int z = 0; z < size_.z(); ++z) take_layer(layers, z, options.free);
 }
 
-void ScoreField::add_surfaces(const Cloud& cloud_map, double surface_sd_m) {
-  const bool facing = cloud_map.has_normals();
-  std::vector<int> planes;
-  for (std::size_t i = 0; i < cloud_map.size(); ++i) {
-    if (!cloud_map.points[i].allFinite()) continue;
-    planes_of(facing ? &cloud_map.normals[i] : nullptr, &planes);
-    add_surface((cloud_map.points[i] - origin_).array(), planes, surface_sd_m);
-  }
-}
-
-void ScoreField::add_surface(const Eigen::Array3f& q_m, const std::vector<int>& planes, double surface_sd_m) {
-  const auto cell = static_cast<float>(cell_);
-  const auto reach = static_cast<float>(2.2 * surface_sd_m);
-  const auto exponent = static_cast<float>(-0.5 / (surface_sd_m * surface_sd_m));
-  const Eigen::Vector3i lo = ((q_m - reach) * inverse_).floor().cast<int>().max(0);
-  const Eigen::Vector3i hi = ((q_m + reach) * inverse_).cast<int>().min(size_.array() - 1);
-  for (int z = lo.z(); z <= hi.z(); ++z)
-    for (int y = lo.y(); y <= hi.y(); ++y)
-      for (int x = lo.x(); x <= hi.x(); ++x) {
-        const Eigen::Array3f centre = (Eigen::Array3f(x, y, z) + 0.5F) * cell;
-        const float squared = (centre - q_m).square().sum();
-        if (squared > reach * reach) continue;
-        const auto value = static_cast<std::int8_t>(std::lround(kSurface * std::exp(exponent * squared)));
-        for (const int plane : planes) {
-          std::int8_t& held = cells_[index(x, y, z, plane)];
-          held = std::max(held, value);
-        }
-      }
-}
-
-void ScoreField::mark_free_space(const std::vector<SightView>& views, int worth) {
-  const auto tolerance = static_cast<float>(0.5 * cell_ + 0.03);
-  for (int z = 0; z < size_.z(); ++z)
+void ScoreField::take_layer(const FieldLayers& layers, int z, int free) {
+  const auto width = static_cast<std::size_t>(size_.x()), rows = static_cast<std::size_t>(size_.y());
+  const std::int8_t* any = layers.near(0, z, kAny);
+  const std::uint8_t* through = layers.through(0, z);
+  std::vector<std::int8_t> open(width * rows);  // -1: the ceiling looked through, and nothing is near
+  for (std::size_t i = 0; i < open.size(); ++i)
+    open[i] = static_cast<std::int8_t>(-static_cast<int>((any[i] == 0) & (through[i] != 0)));
+  const auto nothing = std::count(any, any + open.size(), std::int8_t{0}) +
+                       std::accumulate(open.begin(), open.end(), std::ptrdiff_t{0});
+  const std::ptrdiff_t known = static_cast<std::ptrdiff_t>(open.size()) - nothing;
+  for (int plane = 0; plane <= kAny; ++plane) {
+    const std::int8_t* near = layers.near(0, z, plane);
+    const auto covered =
+        std::count_if(near, near + open.size(), [](std::int8_t v) { return v > kSurface / 2; });
+    Worths worths = worths_of(covered, known);
+    if (plane == kAny) std::iota(worths.begin(), worths.end(), std::int8_t{0});
     for (int y = 0; y < size_.y(); ++y)
-      for (int x = 0; x < size_.x(); ++x) {
-        std::int8_t& any = cells_[index(x, y, z, kAny)];
-        if (any != 0) continue;
-        const Eigen::Vector3f centre =
-            origin_ + (Eigen::Vector3f(x, y, z).array() + 0.5F).matrix() * static_cast<float>(cell_);
-        if (std::none_of(views.begin(), views.end(), [&](const SightView& view) {
-              return view.look(centre, tolerance) == Sight::conflict;
-            }))
-          continue;
-        any = -kSurface;
-        for (int plane = 0; plane < kDirections; ++plane)
-          cells_[index(x, y, z, plane)] = static_cast<std::int8_t>(worth);
-      }
-}
-
-/// A hit on what covers the share q of a layer tells -log2(q) bits.
-void ScoreField::weigh_surfaces() {
-  const std::size_t layer = static_cast<std::size_t>(size_.y()) * static_cast<std::size_t>(stride_);
-  for (int z = 0; z < size_.z(); ++z) {
-    const std::int8_t* any = cells_.data() + index(-pad_, 0, z, kAny);
-    const auto seen = std::count_if(any, any + layer, [](std::int8_t v) { return v != 0; });
-    for (int plane = 0; plane < kDirections; ++plane) {
-      std::int8_t* cells = cells_.data() + index(-pad_, 0, z, plane);
-      const auto covered = std::count_if(cells, cells + layer, [](std::int8_t v) { return v > kSurface / 2; });
-      const double share = (static_cast<double>(covered) + 1) / (static_cast<double>(seen) + 2);
-      const double weight = std::clamp(-std::log2(share) / kMostBits, kLeastWeight, 1.0);
-      for (std::size_t i = 0; i < layer; ++i)
-        if (cells[i] > 0) cells[i] = static_cast<std::int8_t>(std::lround(weight * cells[i]));
-    }
+      write_row(layers.near(y, z, plane), open.data() + static_cast<std::size_t>(y) * width, width,
+                static_cast<std::int8_t>(plane == kAny ? -kSurface : free), worths,
+                cells_.data() + index(0, y, z, plane));
   }
 }
 

@@ -3,17 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/cloud.hpp"
-#include "common/registration/sight.hpp"
+#include "common/registration/field_layers.hpp"
 
 namespace liloc {
-
-struct FieldOptions {
-  double cell_m = 0.1;
-  double surface_sd_m = 0.08;  ///< how far from a surface its worth reaches, as a Gaussian
-  int free = -10;              ///< worth of space that the ceiling looked through
-  int pad = 0;                 ///< cells of zeros at both ends of a row
-};
 
 /// What a device point is worth at each place of the room: up to kSurface on a measured surface that faces the
 /// same way, the more the rarer such surfaces are at that height (floor is everywhere and says little); 0 where
@@ -22,16 +14,19 @@ struct FieldOptions {
 /// device point, normals and free space included. x runs fastest; outside the field all is 0.
 class ScoreField {
  public:
-  static constexpr int kSurface = 15;
-  static constexpr int kAzimuths = 8, kUp = 8, kDown = 9, kDirections = 10;
-  static constexpr int kAny = 10;  ///< surfaces of every direction, all worth kSurface; free space -kSurface
+  static constexpr int kSurface = FieldLayers::kNear, kAzimuths = FieldLayers::kAzimuths,
+                       kUp = FieldLayers::kUp, kDown = FieldLayers::kDown,
+                       kDirections = FieldLayers::kDirections;
+  static constexpr int kAny =
+      FieldLayers::kAny;  ///< surfaces of every direction, all worth kSurface; free space -kSurface
 
   /// The plane for a surface with this unit normal (map axes).
   [[nodiscard]] static int plane_of(const Eigen::Vector3f& normal_map);
 
   ScoreField() = default;
-  /// `cloud` in the map frame, at most a cell apart on surfaces; without normals it faces everywhere.
-  ScoreField(const Cloud& cloud_map, const std::vector<SightView>& views, const FieldOptions& options);
+  ScoreField(const FieldLayers& layers, const FieldOptions& options);
+  ScoreField(const Cloud& cloud_map, const std::vector<SightView>& views, const FieldOptions& options)
+      : ScoreField(FieldLayers(cloud_map, views, options), options) {}
 
   [[nodiscard]] int at(const Eigen::Vector3f& p_map, int plane) const {
     const Eigen::Vector3f q = (p_map - origin_) * inverse_;
@@ -69,10 +64,7 @@ class ScoreField {
         static_cast<std::size_t>(y);
     return row * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(x + pad_);
   }
-  void add_surfaces(const Cloud& cloud_map, double surface_sd_m);
-  void add_surface(const Eigen::Array3f& q_m, const std::vector<int>& planes, double surface_sd_m);
-  void mark_free_space(const std::vector<SightView>& views, int worth);
-  void weigh_surfaces();
+  void take_layer(const FieldLayers& layers, int z, int free);
 
   double cell_ = 0;
   float inverse_ = 1;

@@ -7,14 +7,15 @@
 #include "common/registration/simd.hpp"
 
 namespace liloc {
-namespace {
-
-constexpr std::size_t kAtOnce = 512;  // points whose pixels are found before any is looked up
 
 /// A pinhole camera and where it stands, for a kernel. `R` by columns.
 struct Pinhole {
   float R[9], t[3], fx, fy, cx, cy, width, height, nearest;
 };
+
+namespace {
+
+constexpr std::size_t kAtOnce = 512;  // points whose pixels are found before any is looked up
 
 /// The pixel of each point, or -1 outside of the view, and how far it is.
 LILOC_WIDE void project(const Pinhole& c, const float* x, const float* y, const float* z, std::size_t count,
@@ -116,26 +117,59 @@ SightView SightView::from_cloud(const Cloud& cloud_sensor, const Camera& camera,
   return view;
 }
 
-SightView::Tally SightView::tally(const Vectors& points, std::size_t count,
-                                  const Eigen::Isometry3f& T_sensor_points, float tolerance_m) const {
+Pinhole SightView::pinhole(const Eigen::Isometry3f& T_sensor_points) const {
   Pinhole camera{{}, {}, fx_, fy_, cx_, cy_, width_f_, height_f_, kNearest};
   Eigen::Map<Eigen::Matrix3f>(camera.R) = T_sensor_points.linear();
   Eigen::Map<Eigen::Vector3f>(camera.t) = T_sensor_points.translation();
+  return camera;
+}
+
+namespace {
+
+/// Calls visit(index of the point, its pixel, its depth) for each of the points that are in view.
+template <class Visit>
+void for_each_in_view(const Pinhole& camera, const Vectors& points, std::size_t count, const Visit& visit) {
   std::array<std::int32_t, kAtOnce> pixels{};
   std::array<float, kAtOnce> depths{};
-  Tally tally;
   for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
     const std::size_t here = std::min(kAtOnce, count - begin);
     project(camera, points.x.data() + begin, points.y.data() + begin, points.z.data() + begin, here,
             pixels.data(), depths.data());
-    for (std::size_t i = 0; i < here; ++i) {
-      if (pixels[i] < 0) continue;
-      const Sight sight = compare(bands_[static_cast<std::size_t>(pixels[i])], depths[i], tolerance_m);
-      tally.agree += sight == Sight::agrees;
-      tally.conflict += sight == Sight::conflict;
-    }
+    for (std::size_t i = 0; i < here; ++i)
+      if (pixels[i] >= 0) visit(begin + i, static_cast<std::size_t>(pixels[i]), depths[i]);
   }
+}
+
+}  // namespace
+
+SightView::Tally SightView::tally(const Vectors& points, std::size_t count,
+                                  const Eigen::Isometry3f& T_sensor_points, float tolerance_m) const {
+  Tally tally;
+  for_each_in_view(pinhole(T_sensor_points), points, count, [&](std::size_t, std::size_t pixel, float depth) {
+    const Sight sight = compare(bands_[pixel], depth, tolerance_m);
+    tally.agree += sight == Sight::agrees;
+    tally.conflict += sight == Sight::conflict;
+  });
   return tally;
+}
+
+void SightView::count_through(const Vectors& points_world, std::size_t count, float tolerance_m,
+                              const SightView* before, std::uint8_t* counts) const {
+  const auto through = [&](const SightView& view, std::size_t pixel, float depth) {
+    return compare(view.bands_[pixel], depth, tolerance_m) == Sight::conflict ? 1 : 0;
+  };
+  for_each_in_view(pinhole(T_sensor_world_), points_world, count,
+                   [&](std::size_t i, std::size_t pixel, float depth) {
+                     const int more = through(*this, pixel, depth),
+                               less = before != nullptr ? through(*before, pixel, depth) : 0;
+                     counts[i] = static_cast<std::uint8_t>(counts[i] + more - less);
+                   });
+}
+
+bool SightView::same_sensor(const SightView& other) const {
+  return T_sensor_world_.matrix() == other.T_sensor_world_.matrix() && width_ == other.width_ &&
+         height_ == other.height_ && fx_ == other.fx_ && fy_ == other.fy_ && cx_ == other.cx_ &&
+         cy_ == other.cy_;
 }
 
 void SightView::widen() {

@@ -17,6 +17,8 @@ enum class Sight : std::uint8_t {
   behind     ///< hidden behind a measured surface
 };
 
+struct Pinhole;
+
 /// A depth sensor's measurement, thinned to bands: for each pixel of a small image the nearest and the farthest
 /// depth measured in and around it. The bands keep a point beside an edge from counting as a conflict.
 class SightView {
@@ -59,12 +61,24 @@ class SightView {
   [[nodiscard]] Tally tally(const Vectors& points, std::size_t count, const Eigen::Isometry3f& T_sensor_points,
                             float tolerance_m) const;
 
+  /// Counts, for each of the first `count` points (world frame), whether they lie in space that was looked
+  /// through; less those for which that was so `before`, in a view of the same sensor, if any.
+  void count_through(const Vectors& points_world, std::size_t count, float tolerance_m, const SightView* before,
+                     std::uint8_t* counts) const;
+
+  /// Whether both are of one sensor at one place, and whether it also measured the same.
+  [[nodiscard]] bool same_sensor(const SightView& other) const;
+  [[nodiscard]] bool same_sight(const SightView& other) const {
+    return same_sensor(other) && bands_ == other.bands_;
+  }
+
   [[nodiscard]] bool empty() const { return bands_.empty(); }
 
  private:
   static constexpr float kNearest = 0.2F;
   struct Band {
     float near = 0, far = 0;  ///< metres; far 0: nothing measured
+    bool operator==(const Band&) const = default;
   };
   [[nodiscard]] static Sight compare(const Band& band, float z, float tolerance_m) {
     if (band.far == 0) return Sight::unseen;
@@ -74,6 +88,7 @@ class SightView {
                                                                                       : Sight::behind;
   }
   void prepare(const Camera& small);
+  [[nodiscard]] Pinhole pinhole(const Eigen::Isometry3f& T_sensor_points) const;
   void widen();  ///< takes in the bands of the four neighbours
 
   Eigen::Isometry3f T_sensor_world_ = Eigen::Isometry3f::Identity();

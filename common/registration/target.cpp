@@ -44,6 +44,12 @@ MapPoints map_points_of(const Cloud& cloud_map, const std::vector<std::uint8_t>&
   return MapPoints(sound, doubtful);
 }
 
+NearestGrid nearest_of(const Cloud& cloud, double cell_m, double reach_m, const NearestGrid* before,
+                       const CloudChange& change) {
+  return before == nullptr ? NearestGrid(cloud.points, cell_m, reach_m)
+                           : NearestGrid(cloud.points, cell_m, reach_m, *before, change);
+}
+
 /// About `count` points spread evenly in space: the coarsest voxel grid that still has so many, then a random
 /// cut.
 Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, std::uint64_t seed) {
@@ -66,28 +72,56 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
 
 }  // namespace
 
-Surfaces::Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m)
-    : cloud(std::move(cloud_map)),
-      coarse(voxel_downsample(cloud, 2 * voxel_size_m)),
-      map_points(coarse.points),
-      nearest(cloud.points, voxel_size_m, 1.3 * voxel_size_m),
-      nearest_coarse(coarse.points, 3 * voxel_size_m, 0.32),
-      views_(std::move(views)) {}
+struct Surfaces::Changes {
+  CloudChange cloud, coarse;
+};
 
-void Surfaces::build_fields() const {
-  std::call_once(once_, [this] {
-    field_coarse_ = ScoreField(coarse, views_, kCoarseField);
-    field_fine_ = ScoreField(coarse, views_, kFineField);
+Surfaces::Surfaces(const Cloud& cloud_map, std::vector<SightView> views, double voxel_size_m,
+                   const Surfaces* before)
+    : Surfaces(cloud_map, voxel_downsample(cloud_map, 2 * voxel_size_m), std::move(views), voxel_size_m,
+               before) {}
+
+Surfaces::Surfaces(const Cloud& cloud_map, const Cloud& coarse_map, std::vector<SightView> views,
+                   double voxel_size_m, const Surfaces* before)
+    : Surfaces(cloud_map, coarse_map, std::move(views), voxel_size_m, before,
+               before == nullptr ? Changes{}
+                                 : Changes{change_between(before->cloud, cloud_map),
+                                           change_between(before->coarse, coarse_map)}) {}
+
+Surfaces::Surfaces(const Cloud& cloud_map, const Cloud& coarse_map, std::vector<SightView> views,
+                   double voxel_size_m, const Surfaces* before, const Changes& changes)
+    : cloud(cloud_map),
+      coarse(coarse_map),
+      map_points(coarse.points),
+      nearest(nearest_of(cloud, voxel_size_m, 1.3 * voxel_size_m,
+                         before == nullptr ? nullptr : &before->nearest, changes.cloud)),
+      nearest_coarse(nearest_of(coarse, 3 * voxel_size_m, 0.32,
+                                before == nullptr ? nullptr : &before->nearest_coarse, changes.coarse)),
+      views_(std::move(views)) {
+  if (before != nullptr && before->has_fields_) build_fields(before, &changes.coarse);
+}
+
+void Surfaces::build_fields(const Surfaces* before, const CloudChange* change) const {
+  std::call_once(once_, [&] {
+    const auto layers = [&](const FieldOptions& options, const FieldLayers Surfaces::*member) {
+      if (before == nullptr) return FieldLayers(coarse, views_, options);
+      return FieldLayers(coarse, views_, options, {before->*member, before->views_, *change});
+    };
+    layers_coarse_ = layers(kCoarseField, &Surfaces::layers_coarse_);
+    layers_fine_ = layers(kFineField, &Surfaces::layers_fine_);
+    field_coarse_ = ScoreField(layers_coarse_, kCoarseField);
+    field_fine_ = ScoreField(layers_fine_, kFineField);
+    has_fields_ = true;
   });
 }
 
 const ScoreField& Surfaces::field_coarse() const {
-  build_fields();
+  build_fields(nullptr, nullptr);
   return field_coarse_;
 }
 
 const ScoreField& Surfaces::field_fine() const {
-  build_fields();
+  build_fields(nullptr, nullptr);
   return field_fine_;
 }
 
@@ -96,8 +130,8 @@ Present::Present(const Surfaces& surfaces, const std::vector<SightView>& views, 
       stale(stale_points(surfaces.coarse, views, Movers(moving_map, kAround_m))),
       map_points(map_points_of(surfaces.coarse, stale)) {}
 
-Target make_target(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m) {
-  auto surfaces = std::make_shared<const Surfaces>(std::move(cloud_map), views, voxel_size_m);
+Target make_target(const Cloud& cloud_map, std::vector<SightView> views, double voxel_size_m) {
+  auto surfaces = std::make_shared<const Surfaces>(cloud_map, views, voxel_size_m);
   return {std::move(surfaces), std::move(views)};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The two sides of a global registration, each with what is computed once and read by every proposer and the
 // judge.
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -20,7 +21,10 @@ class Surfaces {
  public:
   /// `cloud_map`: one point per voxel, normals towards the sensor that saw it. `views`: through which lines of
   /// sight space is known to be empty.
-  Surfaces(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m);
+  /// `before`: surfaces of the same room a moment ago, at the same voxel size, or null. From them the same
+  /// indices are made sooner, where the room has changed.
+  Surfaces(const Cloud& cloud_map, std::vector<SightView> views, double voxel_size_m,
+           const Surfaces* before = nullptr);
 
   const Cloud cloud;
   const Cloud coarse;          ///< at twice the voxel size
@@ -33,10 +37,17 @@ class Surfaces {
   [[nodiscard]] const ScoreField& field_fine() const;
 
  private:
-  void build_fields() const;
+  struct Changes;
+  Surfaces(const Cloud& cloud_map, const Cloud& coarse_map, std::vector<SightView> views, double voxel_size_m,
+           const Surfaces* before);
+  Surfaces(const Cloud& cloud_map, const Cloud& coarse_map, std::vector<SightView> views, double voxel_size_m,
+           const Surfaces* before, const Changes& changes);
+  void build_fields(const Surfaces* before, const CloudChange* change) const;
 
   const std::vector<SightView> views_;
   mutable std::once_flag once_;
+  mutable std::atomic<bool> has_fields_ = false;
+  mutable FieldLayers layers_coarse_, layers_fine_;
   mutable ScoreField field_coarse_, field_fine_;
 };
 
@@ -60,7 +71,7 @@ struct Target {
 };
 
 /// Both from one moment.
-[[nodiscard]] Target make_target(Cloud cloud_map, std::vector<SightView> views, double voxel_size_m);
+[[nodiscard]] Target make_target(const Cloud& cloud_map, std::vector<SightView> views, double voxel_size_m);
 
 /// The device's cloud in its sensor frame.
 struct Query {

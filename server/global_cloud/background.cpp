@@ -9,6 +9,9 @@ namespace {
 constexpr int kProven = 4;   // frames in a surface that speaks for its neighbours
 constexpr int kCompany = 2;  // neighbours that move as well, or it is noise
 
+constexpr float kHoldShare = 0.003F;  // of the depth
+constexpr int kMoreFrames = 3;        // times as many in a mean make it worth showing anew
+
 bool lasted(std::uint32_t since_ms, std::uint32_t now_ms, double seconds) {
   return static_cast<double>(now_ms - since_ms) >= 1e3 * seconds;
 }
@@ -116,19 +119,34 @@ Layers Background::separated(const DepthImage& image) const {
   return layers;
 }
 
+bool Background::gained() const {
+  return frames_ == 3 || frames_ == 10 || frames_ == 30;
+}
+
 Change Background::change() const {
   const double share = static_cast<double>(replaced_) / static_cast<double>(pixels_.size());
-  const bool gained = frames_ == 3 || frames_ == 10 || frames_ == 30;
-  if (gained || share > options_.fresh_share) return Change::large;
+  if (gained() || share > options_.fresh_share) return Change::large;
   return share > options_.small_share ? Change::small : Change::none;
+}
+
+void Background::show(Pixel* pixel) const {
+  const auto units = static_cast<std::uint16_t>(std::lround(pixel->surface));
+  const float hold = static_cast<float>(options_.hold_m / scale_m_) + kHoldShare * pixel->surface;
+  const bool appeared = (units == 0) != (pixel->shown == 0),
+             moved = std::abs(pixel->surface - pixel->shown) > hold;
+  if (!appeared && !moved && !gained() && pixel->averaged < kMoreFrames * pixel->shown_averaged) return;
+  pixel->shown = units;
+  pixel->shown_averaged = pixel->averaged;
 }
 
 DepthImage Background::surfaces() {
   replaced_ = 0;
   DepthImage image{last_ns_, width_, height_, {}};
   image.units.reserve(pixels_.size());
-  for (const Pixel& pixel : pixels_)
-    image.units.push_back(static_cast<std::uint16_t>(std::lround(pixel.surface)));
+  for (Pixel& pixel : pixels_) {
+    show(&pixel);
+    image.units.push_back(pixel.shown);
+  }
   return image;
 }
 

@@ -10,7 +10,8 @@ struct BackgroundOptions {
   double settle_seconds = 2.0;  ///< what stands still for so long is part of the room (again)
   double tolerance_m = 0.06;    ///< depths this close, plus 1 % of the depth, are the same surface
   double forget_seconds = 1.0;  ///< a surface without any return for so long is forgotten
-  int most_averaged = 12;       ///< frames in a pixel's running mean
+  int most_averaged = 30;       ///< frames in a pixel's running mean
+  double hold_m = 0.01;         ///< means that moved by less, plus 0.3 % of the depth, are shown as they were
   double fresh_share = 0.004;   ///< so much of the image changed: the room is to be derived anew at once ...
   double small_share = 0.0005;  ///< ... or with the next renewal
 };
@@ -38,7 +39,8 @@ class Background {
   /// How much the surfaces have changed since the last call of `surfaces`; large also after the 3rd, 10th and
   /// 30th frame, for what the means have gained.
   [[nodiscard]] Change change() const;
-  /// The surfaces as a depth image, stamped by the last frame.
+  /// The surfaces as a depth image, stamped by the last frame. What only trembles is the same from image to
+  /// image, so that what is derived from it need not change; it is shown anew as its mean gains frames.
   [[nodiscard]] DepthImage surfaces();
 
  private:
@@ -48,6 +50,8 @@ class Background {
     std::uint32_t candidate_since_ms = 0, missing_since_ms = 0;
     std::uint8_t averaged = 0, candidates = 0;
     bool missing = false;
+    std::uint8_t shown_averaged = 0;  ///< frames in the mean that `surfaces` showed last
+    std::uint16_t shown = 0;          ///< units
   };
   // Times are milliseconds that wrap: only differences count, and a clock may be set forward by years.
   [[nodiscard]] Kind learn(std::size_t i, float units, std::uint32_t now_ms);
@@ -56,6 +60,8 @@ class Background {
   [[nodiscard]] float tolerance_of(float units) const;
   template <class Visit>
   void for_each_around(std::size_t i, const Visit& visit) const;
+  void show(Pixel* pixel) const;
+  [[nodiscard]] bool gained() const;
   void miss(Pixel* pixel, std::uint32_t now_ms);
   void replace(Pixel* pixel, float units);
 

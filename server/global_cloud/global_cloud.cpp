@@ -103,7 +103,7 @@ std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame
   for (const Frame& frame : frames) parts.push_back(frame->surfaces());
   for (const auto& room : rooms_)
     if (room->parts() == parts) return room;
-  rooms_.push_back(std::make_shared<const StitchedRoom>(std::move(parts), options_.snapshot));
+  rooms_.push_back(std::make_shared<const StitchedRoom>(std::move(parts), options_.snapshot, prepared_));
   if (rooms_.size() > kRoomsKept) rooms_.pop_front();
   return rooms_.back();
 }

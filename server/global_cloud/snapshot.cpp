@@ -69,8 +69,11 @@ const std::shared_ptr<const Surfaces>& StitchedRoom::surfaces() const {
       append(stitched, part->cloud_map());
       views.push_back(part->view());
     }
-    surfaces_ = std::make_shared<const Surfaces>(voxel_downsample(stitched, options_.voxel_size_m),
-                                                 std::move(views), options_.voxel_size_m);
+    const auto before = before_.lock();
+    surfaces_ = std::make_shared<const Surfaces>(
+        voxel_downsample(stitched, options_.voxel_size_m), std::move(views), options_.voxel_size_m,
+        before && before->has_surfaces_ ? before->surfaces_.get() : nullptr);
+    has_surfaces_ = true;
   });
   return surfaces_;
 }

@@ -70,7 +70,9 @@ class LidarFrame {
 class StitchedRoom {
  public:
   using Parts = std::vector<std::shared_ptr<const LidarSurfaces>>;
-  StitchedRoom(Parts parts, const SnapshotOptions& options) : parts_(std::move(parts)), options_(options) {}
+  /// `before`: a room of a moment ago, whose indices may serve for this one's, or null.
+  StitchedRoom(Parts parts, const SnapshotOptions& options, std::weak_ptr<const StitchedRoom> before = {})
+      : parts_(std::move(parts)), options_(options), before_(std::move(before)) {}
 
   [[nodiscard]] const Parts& parts() const { return parts_; }
   [[nodiscard]] const std::shared_ptr<const Surfaces>& surfaces() const;
@@ -87,11 +89,12 @@ class StitchedRoom {
  private:
   const Parts parts_;
   const SnapshotOptions options_;
+  const std::weak_ptr<const StitchedRoom> before_;  ///< weak: rooms must not keep all that came before them
   mutable std::once_flag surfaces_once_, described_once_, ups_once_;
   mutable std::vector<Eigen::Vector3d> ups_map_;
   mutable std::shared_ptr<const Surfaces> surfaces_;
   mutable Described described_;
-  mutable std::atomic<bool> has_descriptors_ = false, descriptors_asked_ = false;
+  mutable std::atomic<bool> has_surfaces_ = false, has_descriptors_ = false, descriptors_asked_ = false;
 };
 
 /// Immutable; shared by all clients whose requests fall on it.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace liloc {
 namespace {
@@ -21,6 +22,22 @@ DepthImage with_visitor(double at_s, int from, int to) {
 
 std::ptrdiff_t count(const DepthImage& image, std::uint16_t units) {
   return std::count(image.units.begin(), image.units.end(), units);
+}
+
+TEST(Background, WhatOnlyTremblesIsShownAsItWas) {
+  Background background(kCamera, {});
+  std::mt19937 rng(7);
+  const auto frame = [&](int i, int wall_units) {
+    DepthImage image = with_visitor(0.1 * i, 0, 0);
+    for (std::uint16_t& units : image.units) units = static_cast<std::uint16_t>(wall_units + rng() % 9 - 4);
+    (void)background.learn(image);
+  };
+  for (int i = 0; i < 40; ++i) frame(i, 4000);
+  const DepthImage first = background.surfaces();
+  for (int i = 40; i < 80; ++i) frame(i, 4001);
+  EXPECT_EQ(background.surfaces().units, first.units) << "1 mm and noise of 4";
+  for (int i = 80; i < 140; ++i) frame(i, 4040);
+  for (const std::uint16_t units : background.surfaces().units) EXPECT_NEAR(units, 4040, 6);
 }
 
 TEST(Background, WhoWalksByIsTakenOutWithARim) {

@@ -1,6 +1,7 @@
 #include "proto-tests/replay/lockstep.hpp"
 
 #include <algorithm>
+#include <ctime>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -17,11 +18,19 @@ namespace {
 
 constexpr StampNs kHold_ns = from_ms(100);  // longest wait for the ceiling; the server's --hold-ms
 
+/// CPU time of the calling thread so far.
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 struct Device {
   explicit Device(EngineOptions options) : engine(std::move(options)) {}
   Engine engine;
   TraceWriter trace;
   std::deque<SpotRequest> held;  ///< asked, not yet answered; oldest first
+  double cpu_s = 0;              ///< of the engine, which has no thread of its own
 };
 
 EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions& options) {
@@ -82,8 +91,10 @@ class Lockstep {
 
   Status close() {
     answer_due(std::numeric_limits<StampNs>::max());
-    for (auto& device : devices_)
-      if (auto status = device->trace.close(); !status) return status;
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+      facts.client_cpu_s[recording_.devices[i].info.id] = devices_[i]->cpu_s;
+      if (auto status = devices_[i]->trace.close(); !status) return status;
+    }
     return {};
   }
 
@@ -103,7 +114,11 @@ class Lockstep {
 
   void add_imu(const Event& event) {
     const ImuSample& sample = recording_.devices[event.source].imu[event.index];
-    if (auto status = devices_[event.source]->engine.add_imu(sample); !status) skip(status.error().message);
+    Device& device = *devices_[event.source];
+    const double before_s = thread_cpu_s();
+    const Status status = device.engine.add_imu(sample);
+    device.cpu_s += thread_cpu_s() - before_s;
+    if (!status) skip(status.error().message);
   }
 
   Status add_device(const Event& event, const Result<DepthImage>& image) {
@@ -113,7 +128,9 @@ class Lockstep {
       return {};
     }
     Device& device = *devices_[event.source];
+    const double before_s = thread_cpu_s();
     const auto frame = device.engine.add_depth(*image);
+    device.cpu_s += thread_cpu_s() - before_s;
     if (!frame) {
       skip(frame.error().message);
       return {};

@@ -47,6 +47,14 @@ Json json_of(const LocalScore& local) {
           {"latency_ms_median", json_of(local.latency_ms_median)}};
 }
 
+/// CPU time of the device's engine for each second with a pose.
+std::optional<double> cpu_ms_per_localized_s(const RunFacts& run, const DeviceScore& device) {
+  const auto cpu = run.client_cpu_s.find(device.id);
+  const double localized_s = device.online.coverage * run.recorded_s;
+  if (cpu == run.client_cpu_s.end() || localized_s <= 0) return std::nullopt;
+  return 1e3 * cpu->second / localized_s;
+}
+
 Json json_of(const DeviceScore& device) {
   Json json{{"frames", device.frames},
             {"has_truth", device.has_truth},
@@ -76,7 +84,7 @@ std::string track_text(const TrackScore& track, bool has_truth) {
       cell(track.frames_over_10deg_03m, 1, 100));
 }
 
-void add_device(std::string& table, const DeviceScore& device) {
+void add_device(std::string& table, const RunFacts& run, const DeviceScore& device) {
   table +=
       fmt::format("{}: {} frames{}\n", device.id, device.frames, device.has_truth ? "" : ", no ground truth");
   add_row(table, "online poses", track_text(device.online, device.has_truth));
@@ -95,6 +103,8 @@ void add_device(std::string& table, const DeviceScore& device) {
   add_row(table, "spot latency",
           fmt::format("median {} ms, p99 {} ms; first pose after {} ms", cell(spots.latency_ms_median, 1),
                       cell(spots.latency_ms_p99, 1), cell(device.first_pose_ms, 0)));
+  if (const auto cpu_ms = cpu_ms_per_localized_s(run, device))
+    add_row(table, "client CPU", fmt::format("{:.1f} ms per localized second", *cpu_ms));
   if (!device.local) return;
   const LocalScore& local = *device.local;
   text = fmt::format("median {} ms a frame", cell(local.latency_ms_median, 2));
@@ -118,7 +128,10 @@ std::string to_json(const Report& report) {
             {"device_frames", run.device_frames},
             {"skipped", run.skipped},
             {"devices", Json::object()}};
-  for (const DeviceScore& device : report.devices) json["devices"][device.id] = json_of(device);
+  for (const DeviceScore& device : report.devices) {
+    Json& entry = json["devices"][device.id] = json_of(device);
+    entry["client_cpu_ms_per_localized_s"] = json_of(cpu_ms_per_localized_s(run, device));
+  }
   return json.dump(1) + "\n";
 }
 
@@ -127,7 +140,7 @@ std::string to_table(const Report& report) {
   std::string table = fmt::format(
       "{} ({}, seed {}): {:.1f} s recorded, {:.1f} s taken; {} ceiling frames, {} device frames\n",
       run.recording, run.mode, run.seed, run.recorded_s, run.wall_s, run.ceiling_frames, run.device_frames);
-  for (const DeviceScore& device : report.devices) add_device(table, device);
+  for (const DeviceScore& device : report.devices) add_device(table, run, device);
   if (report.devices.empty()) table += "no device in this recording: nothing to locate\n";
   if (!run.skipped.empty()) {
     table += fmt::format("{} frames skipped, the first: {}\n", run.skipped.size(), run.skipped.front());

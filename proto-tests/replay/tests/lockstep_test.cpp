@@ -78,6 +78,17 @@ TEST_F(Lockstep, LocatesTheDevice) {
   EXPECT_TRUE(report->run.skipped.empty());
 }
 
+TEST_F(Lockstep, TellsTheClientsShareOfTheCpu) {
+  const auto report = replay(options("cpu"));
+  ASSERT_TRUE(report) << report.error().error.message;
+  ASSERT_TRUE(report->run.client_cpu_s.contains("device0"));
+  EXPECT_GT(report->run.client_cpu_s.at("device0"), 0);
+  EXPECT_LT(report->run.client_cpu_s.at("device0"),
+            report->run.wall_s);  // one thread, and the server's work beside it
+  EXPECT_THAT(to_table(*report), testing::HasSubstr("ms per localized second"));
+  EXPECT_THAT(to_json(*report), testing::HasSubstr("client_cpu_ms_per_localized_s"));
+}
+
 TEST_F(Lockstep, TheSameSeedGivesTheSameAnswersBitByBit) {
   ASSERT_TRUE(replay(options("first")));
   ASSERT_TRUE(replay(options("second")));

@@ -66,9 +66,9 @@ Costs run(const Stage& stage, double skip_s) {
     if (!snapshot || (*snapshot)->room() == last) continue;
     const bool all = (*snapshot)->frames().size() == stage.site.global_lidars.size();
     if (!all) continue;
-    (*snapshot)->room()->prepare(false);
     if (last && stamp_ns > *start_ns + from_seconds(skip_s)) costs.add(*(*snapshot)->room(), last);
     last = (*snapshot)->room();
+    last->prepare(false);
   }
   return costs;
 }

@@ -7,10 +7,10 @@
 #include <atomic>
 #include <thread>
 
+#include "client/src/tests/by_heart_server.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/testing/box_room.hpp"
 #include "common/wire/sensor_publishers.hpp"
-#include "common/wire/server_link.hpp"
 
 namespace liloc {
 namespace {
@@ -26,31 +26,6 @@ Pose drive(double t) {
   return scene::looking({3 + 0.1 * t, 2.5, 1.2}, 0.2 * t, 0.2);
 }
 
-/// Answers each request with odometry at (1, 2, 3).
-class FakeServer {
- public:
-  FakeServer() {
-    seat_ = *wire::Participant::create({.domain = kDomain, .role = wire::Role::server});
-    dispatcher_ = std::move(*wire::Dispatcher::create(*seat_));
-    wire::ServerCallbacks callbacks;
-    callbacks.on_request = [this](const wire::Arrival& arrival) {
-      SpotReply reply = refusal(arrival.request, Reason::confirmed, "");
-      reply.status = SpotStatus::verified;
-      reply.T_map_odom = Pose(Eigen::Translation3d(1, 2, 3));
-      reply.covariance = 1e-4 * Matrix6d::Identity();
-      EXPECT_TRUE(link_->reply(arrival.from, reply));
-    };
-    link_ = std::move(*wire::ServerLink::create(*dispatcher_, {}, callbacks));
-    dispatcher_->start();
-  }
-  ~FakeServer() { dispatcher_->stop(); }
-
- private:
-  std::optional<wire::Participant> seat_;
-  std::unique_ptr<wire::Dispatcher> dispatcher_;
-  std::unique_ptr<wire::ServerLink> link_;
-};
-
 DaemonOptions options(std::vector<const char*> extra) {
   std::vector<const char*> arguments{"liloc-client", "--id",          "robot1", "--domain",
                                      "144",          "--interval-ms", "200",    "--ros"};
@@ -62,7 +37,8 @@ DaemonOptions options(std::vector<const char*> extra) {
 }
 
 TEST(Daemon, LocatesARobotByItsWheelsAndClouds) {
-  FakeServer server;
+  const auto server = test::ByHeartServer::start(kDomain);
+  ASSERT_TRUE(server) << server.error().message;
   auto daemon = Daemon::start(options({"--points-topic", "cloud", "--points-view", "160", "120", "70", "55",
                                        "--odometry-topic", "/wheels/odom", "--odom-frame", "wheels/odom"}),
                               [] { return false; });
@@ -87,7 +63,8 @@ TEST(Daemon, LocatesARobotByItsWheelsAndClouds) {
 }
 
 TEST(Daemon, TellsRosTheOdometryOfADepthCamera) {
-  FakeServer server;
+  const auto server = test::ByHeartServer::start(kDomain);
+  ASSERT_TRUE(server) << server.error().message;
   const auto seat = *wire::Participant::create({.domain = kDomain, .role = wire::Role::source});
   const Camera camera = scene::small_camera();
   const auto depth = *wire::DepthPublisher::create(seat, "robot1", camera);

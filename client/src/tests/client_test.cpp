@@ -7,9 +7,9 @@
 #include <chrono>
 #include <thread>
 
+#include "client/src/tests/by_heart_server.hpp"
 #include "client/src/tests/walk.hpp"
 #include "common/geometry/depth.hpp"
-#include "common/wire/server_link.hpp"
 
 namespace liloc {
 namespace {
@@ -36,33 +36,20 @@ Options options() {
 
 const auto kBegin = std::chrono::steady_clock::now();
 
-/// A server that knows the answer: odometry lies at (1, 2, 3).
+/// A server that knows the answer and the time, and remembers what it was asked.
 class FakeServer {
  public:
   explicit FakeServer(const std::string& id = "edge1") {
-    auto joined = wire::Participant::create({.domain = kDomain, .role = wire::Role::server});
-    EXPECT_TRUE(joined) << (joined ? "" : joined.error().message);
-    participant_ = std::move(*joined);
-    dispatcher_ = std::move(*wire::Dispatcher::create(*participant_));
-    wire::ServerCallbacks callbacks;
-    callbacks.on_request = [this](const wire::Arrival& arrival) {
-      SpotReply reply = refusal(arrival.request, Reason::none, "");
-      reply.status = SpotStatus::verified;
-      reply.reason = Reason::confirmed;
-      reply.T_map_odom = Pose(Eigen::Translation3d(1, 2, 3));
-      reply.T_map_sensor = *reply.T_map_odom * arrival.request.T_odom_sensor;
-      reply.covariance = 1e-4 * Matrix6d::Identity();
+    auto started = ByHeartServer::start(kDomain, id, [this](const wire::Arrival& arrival, SpotReply& reply) {
       reply.server_received_ns = ceiling_ns(arrival.at);
       reply.server_sent_ns = ceiling_ns(std::chrono::steady_clock::now());
       last_ceiling_stamp_ns = arrival.request.ceiling_stamp_ns;
       last_stamp_ns = arrival.request.stamp_ns;
-      EXPECT_TRUE(link_->reply(arrival.from, reply));
       ++answered;
-    };
-    link_ = std::move(*wire::ServerLink::create(*dispatcher_, {.server_id = id}, callbacks));
-    dispatcher_->start();
+    });
+    EXPECT_TRUE(started) << (started ? "" : started.error().message);
+    server_ = std::move(*started);
   }
-  ~FakeServer() { dispatcher_->stop(); }
 
   /// The ceiling's clock: kStart at kBegin.
   static StampNs ceiling_ns(std::chrono::steady_clock::time_point at) {
@@ -73,9 +60,7 @@ class FakeServer {
   std::atomic<StampNs> last_stamp_ns = 0, last_ceiling_stamp_ns = 0;
 
  private:
-  std::optional<wire::Participant> participant_;
-  std::unique_ptr<wire::Dispatcher> dispatcher_;
-  std::unique_ptr<wire::ServerLink> link_;
+  std::unique_ptr<ByHeartServer> server_;
 };
 
 /// Feeds frames, ten times faster than life, until the condition holds.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace liloc {
 namespace {
@@ -20,7 +19,8 @@ std::uint64_t hash_of(const Eigen::Vector3f& p) {
 }
 
 bool same(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  return std::memcmp(a.data(), b.data(), sizeof a) == 0;
+  const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+  return bits(a.x()) == bits(b.x()) && bits(a.y()) == bits(b.y()) && bits(a.z()) == bits(b.z());
 }
 
 /// Finds a cloud's points by their bits.

@@ -43,9 +43,8 @@ struct FieldLayers::Stamp {
           static_cast<float>(-2 * sd_m * sd_m * std::log((value - 0.5) / kNear));
     int value = kNear;
     for (std::size_t bin = 0; bin < kBins; ++bin) {
-      first_guess[bin] =
-          static_cast<std::int8_t>(nearness(reach_m * reach_m / kBins * static_cast<float>(bin), value));
-      value = first_guess[bin];
+      value = nearness(reach_m * reach_m / kBins * static_cast<float>(bin), value);
+      first_guess[bin] = value;
     }
   }
   /// kNear times the Gaussian of a squared distance, rounded; `guess` may be too high.
@@ -84,7 +83,7 @@ struct FieldLayers::Stamp {
   static constexpr std::size_t kBins = 64;
   float reach_m;
   std::array<float, kNear + 1> limits{};  ///< squared distances up to which a value is reached
-  std::array<std::int8_t, kBins> first_guess{};
+  std::array<int, kBins> first_guess{};
   std::size_t count = 0;
   std::vector<std::size_t> cells;  ///< the first `count` of them, and their values
   std::vector<std::int8_t> values;

@@ -48,11 +48,10 @@ EvidenceRow against_truth(const Evidence& evidence, const Pose& T_map_sensor_tru
 Status write_evidence(const std::string& path, const std::vector<EvidenceRow>& rows) {
   std::ofstream out(path);
   for (const EvidenceRow& r : rows)
-    out << fmt::format("{} {:d} {:.4f} {} {} {:.5f} {:d} {} {} {:.5f} {}\n", r.seed, r.live, r.overlap,
+    out << fmt::format("{} {:d} {:.4f} {} {} {:.5f} {:.4f} {:d} {:.4f} {}\n", r.seed, r.live, r.overlap,
                        text_of(r.evidence.own, r.evidence.own_estimate, r.own_right),
                        text_of(r.evidence.best, r.evidence.best_estimate, r.best_right), r.evidence.margin,
-                       r.evidence.stayed, r.evidence.supports, r.evidence.rival_supports,
-                       r.evidence.lead_per_spot, static_cast<int>(r.evidence.chain.value_or(Reason::none)));
+                       r.evidence.own_log_odds, r.evidence.stayed, r.evidence.log_odds, r.evidence.spots);
   if (!out.flush()) return fail("{}: cannot be written; name a file in a folder that exists", path);
   return {};
 }
@@ -64,15 +63,13 @@ Result<std::vector<EvidenceRow>> read_evidence(const std::string& path) {
   for (std::string line; std::getline(in, line);) {
     std::istringstream fields(line);
     EvidenceRow r;
-    int chain = 0;
     const bool whole = fields >> r.seed >> r.live >> r.overlap &&
                        read(fields, &r.evidence.own, &r.evidence.own_estimate, &r.own_right) &&
                        read(fields, &r.evidence.best, &r.evidence.best_estimate, &r.best_right) &&
-                       fields >> r.evidence.margin >> r.evidence.stayed >> r.evidence.supports >>
-                           r.evidence.rival_supports >> r.evidence.lead_per_spot >> chain;
+                       fields >> r.evidence.margin >> r.evidence.own_log_odds >> r.evidence.stayed >>
+                           r.evidence.log_odds >> r.evidence.spots;
     if (!whole)
       return fail("{}: line {} is no row of evidence; write it with --evidence", path, rows.size() + 1);
-    if (chain != 0) r.evidence.chain = static_cast<Reason>(chain);
     rows.push_back(std::move(r));
   }
   return rows;

@@ -42,46 +42,32 @@ std::string marked(const std::string& name, bool is_default) {
   return is_default ? fmt::format("**{}**", name) : name;
 }
 
-void sweep_cold(const std::vector<EvidenceRow>& rows) {
-  print_heading("One spot alone", "margin over the runner-up, share seen, share of it that agrees");
-  const VerifyOptions standard;
-  for (const double margin : {0.15, 0.45, 0.75})
-    for (const double agree : {0.3, 0.45})
-      for (const double overlap : {0.97, 0.985, 0.99}) {
-        VerifyOptions o;
-        o.conclusive_margin = margin;
-        o.conclusive_agree = agree;
-        o.conclusive_overlap = overlap;
-        print_line(marked(fmt::format("{:.2f}, {:.2f}, {:.3f}", margin, agree, overlap),
-                          margin == standard.conclusive_margin && agree == standard.conclusive_agree &&
-                              overlap == standard.conclusive_overlap),
-                   rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
-                     if (r.live || !r.evidence.own) return std::nullopt;
-                     return Outcome{conclusive(r.evidence, o), r.own_right};
-                   });
-      }
+/// `verdict` of a row that is of a search, with a threshold in place of the default.
+void sweep_odds(
+    const char* title, double standard_odds, const std::vector<EvidenceRow>& rows,
+    const std::function<std::optional<Outcome>(const EvidenceRow&, const VerifyOptions&)>& verdict) {
+  print_heading(title, "logarithm of the odds");
+  for (const double odds : {2.0, 3.0, 3.4, 4.0, 4.5, 5.0, 5.5, 6.0, 7.0}) {
+    VerifyOptions o;
+    o.log_odds = o.log_odds_few = odds;
+    print_line(marked(fmt::format("{:.1f}", odds), odds == standard_odds), rows,
+               [&](const EvidenceRow& r) -> std::optional<Outcome> {
+                 if (r.live || !r.evidence.own) return std::nullopt;
+                 return verdict(r, o);
+               });
+  }
 }
 
 void sweep_searching(const std::vector<EvidenceRow>& rows) {
-  print_heading("Several spots, not yet located",
-                "lead per spot, share of device points on seen surfaces, share of ceiling points that agree");
-  const VerifyOptions standard;
-  for (const double lead : {0.0, 0.08, 0.2})
-    for (const double agree : {0.12, 0.3, 0.35, 0.45})
-      for (const double map_agree : {0.93, 0.96, 0.98}) {
-        VerifyOptions o;
-        o.lead_per_spot = lead;
-        o.confirmed_agree = agree;
-        o.confirmed_map_agree = map_agree;
-        o.verified_map_agree = std::min(map_agree, standard.verified_map_agree);
-        print_line(marked(fmt::format("{:.2f}, {:.2f}, {:.2f}", lead, agree, map_agree),
-                          lead == standard.lead_per_spot && agree == standard.confirmed_agree &&
-                              map_agree == standard.confirmed_map_agree),
-                   rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
-                     if (r.live || !r.evidence.best) return std::nullopt;
-                     return Outcome{confirmed(r.evidence, o).has_value(), r.best_right};
-                   });
-      }
+  sweep_odds("One spot alone", VerifyOptions{}.log_odds_few, rows,
+             [](const EvidenceRow& r, const VerifyOptions& o) {
+               return Outcome{conclusive(r.evidence, o), r.own_right};
+             });
+  sweep_odds(
+      "Three spots and more", VerifyOptions{}.log_odds, rows, [](const EvidenceRow& r, const VerifyOptions& o) {
+        return r.evidence.spots < o.spots ? std::nullopt
+                                          : std::optional(Outcome{confirmed(r.evidence, o), r.best_right});
+      });
 }
 
 void sweep_following(const std::vector<EvidenceRow>& rows) {
@@ -105,7 +91,6 @@ void sweep_following(const std::vector<EvidenceRow>& rows) {
 }  // namespace
 
 void print_sweep(const std::vector<EvidenceRow>& rows) {
-  sweep_cold(rows);
   sweep_searching(rows);
   sweep_following(rows);
 }

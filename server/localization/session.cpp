@@ -30,6 +30,14 @@ PoseEstimate estimate_of(const Spot& spot, const Hypothesis& hypothesis) {
   return {T, pose_covariance(spot.problem().target, spot.query(), T)};
 }
 
+/// Of the best of a spot's hypotheses against the others, by that spot alone.
+double log_odds_alone(const std::vector<Hypothesis>& found, const TrackOptions& options) {
+  std::vector<double> evidence;
+  for (const Hypothesis& h : found)
+    evidence.push_back(evidence_of(h.judgement, fits(h, options), options.belief));
+  return log_odds_of(0, evidence, options.belief);
+}
+
 void conclude(SpotStatus status, Reason reason, SpotReply* reply) {
   reply->status = status;
   reply->reason = reason;
@@ -61,6 +69,7 @@ void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* re
   evidence_ = {};
   evidence_.own = found.front();
   evidence_.own_estimate = estimate_of(*spot, found.front());
+  evidence_.own_log_odds = log_odds_alone(found, verify_.tracks);
   evidence_.margin = margin_of(found);
   report(found.front(), evidence_.own_estimate, evidence_.margin, reply);
   if (options_.verify_or_default() == Verify::tracks && conclusive(evidence_, verify_))
@@ -68,59 +77,47 @@ void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* re
   conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
 }
 
-/// All that the newest spot and the ones before it say of the best track: its lead over every rival, and
-/// whether the paper's three checks tie it to the spots' own answers.
+/// All that the newest spot and the ones before it say of the best track.
 Evidence Session::gathered(const Spot& spot, const std::vector<Hypothesis>& found) const {
   const Track& best = tracks_.best_first().front();
   Evidence e;
   e.own = found.front();
   e.own_estimate = estimate_of(spot, found.front());
+  e.own_log_odds = log_odds_alone(found, verify_.tracks);
   e.margin = margin_of(found);
   e.best = best.latest;
   e.best_estimate = estimate_of(spot, best.latest);
-  e.stayed = best.fits.back();
-  e.supports = best.supports();
-  e.lead_per_spot = tracks_.lead() / static_cast<double>(tracks_.spots());
-  for (std::size_t i = 1; i < tracks_.best_first().size(); ++i)
-    e.rival_supports = std::max(e.rival_supports, tracks_.best_first()[i].supports());
-  if (own_answers_.size() < 3) return e;
-  const Verification v = verify({own_answers_[0], own_answers_[1], own_answers_[2]}, verify_.equality);
-  const SpotPose newest{v.T_map_sensor[2], own_answers_[2].T_odom_sensor};
-  const SpotPose tracked{best.T_map_odom * newest.T_odom_sensor, newest.T_odom_sensor};
-  if (v.verdict != Verdict::none && equal(tracked, newest, verify_.equality))
-    e.chain = v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed;
+  e.stayed = best.fits;
+  e.log_odds = tracks_.log_odds();
+  e.spots = tracks_.spots();
   return e;
 }
 
 /// Searches the whole room from this spot and lets all tracks weigh it; locks on and returns why once that is
-/// safe. `evidence_` tells what was found.
-std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& spot) {
-  const std::vector<Hypothesis> found = search(*spot, options_);
+/// safe. `evidence_` tells what was found. `followed`: what a verified pose looks like here; it competes.
+std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& spot,
+                                           const std::optional<Hypothesis>& followed) {
+  std::vector<Hypothesis> found = search(*spot, options_);
   spots_since_search_ = 0;
   evidence_ = {};
   if (found.empty()) return std::nullopt;
+  last_margin_ = margin_of(found);
+  const auto known = [&](const Hypothesis& h) {
+    return same_place(h.T_map_sensor(), followed->T_map_sensor());
+  };
+  if (followed && std::ranges::none_of(found, known)) found.push_back(*followed);
   tracks_.add(spot, found);
-  own_answers_.push_back({found.front().T_map_sensor(), spot->T_odom_sensor()});
-  if (own_answers_.size() > 3) own_answers_.pop_front();
   evidence_ = gathered(*spot, found);
-  last_margin_ = evidence_.margin;
-  // Alone it outvotes neither a track that still holds nor what the spots before it say, unless they are of
-  // where the device was before somebody lifted it.
-  const bool heard = tracks_.spots() == 1 || (estimate_ && doubted_) || seconded(evidence_, verify_);
-  const bool alone = !followed_ && heard && conclusive(evidence_, verify_);
-  if (alone) {
-    evidence_.best = evidence_.own;
-    evidence_.best_estimate = evidence_.own_estimate;
-  }
-  const auto why = alone ? std::optional(Reason::conclusive) : confirmed(evidence_, verify_);
   const bool elsewhere =
       estimate_ && !same_place(evidence_.best_estimate.T_map_sensor, estimate_->T_map_sensor);
-  if (!why || (elsewhere && !followed_ && !doubted_)) return std::nullopt;
+  if (!confirmed(evidence_, verify_) || (elsewhere && !followed_ && !doubted_)) return std::nullopt;
   // A track that holds has more behind it than this spot's own search; elsewhere, the search is right.
   if (!followed_ || elsewhere) estimate_ = evidence_.best_estimate;
   T_odom_sensor_ = spot->T_odom_sensor();
   weak_in_a_row_ = 0;
-  return why;
+  if (tracks_.spots() == 1) return Reason::conclusive;
+  const bool own = same_place(evidence_.own->T_map_sensor(), evidence_.best->T_map_sensor());
+  return own ? Reason::confirmed : Reason::corrected;
 }
 
 void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
@@ -134,7 +131,7 @@ void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotRepl
     reply->T_map_odom = estimate_->T_map_sensor * T_odom_sensor_.inverse();
     return conclude(SpotStatus::verified, *why, reply);
   }
-  const bool few = tracks_.spots() < static_cast<std::size_t>(verify_.spots);
+  const bool few = tracks_.spots() < verify_.spots;
   conclude(SpotStatus::provisional,
            few                       ? Reason::awaiting_spots
            : led(evidence_, verify_) ? Reason::inconsistent
@@ -173,14 +170,16 @@ void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<
                               SpotReply* reply) {
   followed_ = follow(request, *spot, reply);
   weak_in_a_row_ = followed_ ? 0 : weak_in_a_row_ + 1;
-  doubted_ = contradicted(evidence_, verify_) || weak_in_a_row_ > verify_.patience;
+  const bool doubted = contradicted(evidence_, verify_) || weak_in_a_row_ > verify_.patience;
+  if (doubted && !doubted_) tracks_.clear();  // what odometry tied to the place before may be lost
+  doubted_ = doubted;
   conclude(followed_ ? SpotStatus::verified : SpotStatus::provisional,
            followed_ ? Reason::confirmed : Reason::weak, reply);
   // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that
   // was lifted and put elsewhere must not be believed for long.
   if (++spots_since_search_ >= verify_.research_every || weak_in_a_row_ >= 2) {
     const Evidence followed = std::exchange(evidence_, {});
-    if (const auto why = search_room(spot)) {
+    if (const auto why = search_room(spot, followed.best)) {
       report(*evidence_.best, *estimate_, last_margin_, reply);
       conclude(SpotStatus::verified, *why, reply);
     } else {

@@ -28,7 +28,8 @@ class Session {
   void answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   void answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   void start_segment(std::uint32_t segment);
-  std::optional<Reason> search_room(const std::shared_ptr<const Spot>& spot);
+  std::optional<Reason> search_room(const std::shared_ptr<const Spot>& spot,
+                                    const std::optional<Hypothesis>& followed = std::nullopt);
   [[nodiscard]] Evidence gathered(const Spot& spot, const std::vector<Hypothesis>& found) const;
   bool follow(const SpotRequest& request, const Spot& spot, SpotReply* reply);
 

@@ -6,16 +6,6 @@
 #include "common/registration/settle.hpp"
 
 namespace liloc {
-double Track::total() const {
-  return std::accumulate(scores.begin(), scores.end(), 0.0);
-}
-int Track::supports() const {
-  return static_cast<int>(std::count(fits.begin(), fits.end(), true));
-}
-int Track::own_finds() const {
-  return static_cast<int>(std::count(found_own.begin(), found_own.end(), true));
-}
-
 double bound_share(const Hypothesis& hypothesis) {
   return hypothesis.judgement.agree > 0 ? hypothesis.alignment.pair_share / hypothesis.judgement.agree : 0.0;
 }
@@ -29,13 +19,11 @@ bool fits(const Hypothesis& hypothesis, const TrackOptions& options) {
 void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found,
                     std::vector<bool>* taken) const {
   const Pose predicted = track->T_map_odom * spot.T_odom_sensor();
-  bool own = false;
   std::optional<Hypothesis> here;
   for (std::size_t i = 0; i < found.size() && !here; ++i)
     if (same_place(found[i].T_map_sensor(), predicted, options_.gate)) {
       here = found[i];
       (*taken)[i] = true;
-      own = true;
     }
   if (!here) {
     here = refine_and_judge(spot.problem(), predicted);
@@ -49,9 +37,8 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
     here->judgement = judge(spot.problem().target, spot.query(), spot.query().medium, predicted,
                             2 * spot.problem().judging.fine_tolerance_m);
   track->latest = *here;
-  track->scores.push_back(here->judgement.score);
-  track->found_own.push_back(own);
-  track->fits.push_back(stayed && liloc::fits(*here, options_));
+  track->fits = stayed && liloc::fits(*here, options_);
+  track->evidence.push_back(evidence_of(here->judgement, track->fits, options_.belief));
 }
 
 Track Tracks::founded(const Hypothesis& hypothesis) const {
@@ -65,15 +52,18 @@ Track Tracks::founded(const Hypothesis& hypothesis) const {
     track.T_map_odom = T_map_odom;  // looking back does not move it
   }
   track.latest = hypothesis;
-  track.scores.push_back(hypothesis.judgement.score);
-  track.found_own.push_back(true);
-  track.fits.push_back(liloc::fits(hypothesis, options_));
+  track.fits = liloc::fits(hypothesis, options_);
+  track.evidence.push_back(evidence_of(hypothesis.judgement, track.fits, options_.belief));
   return track;
+}
+
+double Tracks::total(const Track& track) const {
+  return std::inner_product(weights_.begin(), weights_.end(), track.evidence.begin(), 0.0);
 }
 
 void Tracks::prune() {
   std::stable_sort(tracks_.begin(), tracks_.end(),
-                   [](const Track& a, const Track& b) { return a.total() > b.total(); });
+                   [this](const Track& a, const Track& b) { return total(a) > total(b); });
   const Pose& T_odom_sensor = spots_.back()->T_odom_sensor();
   const PlaceGate wide{2 * options_.gate.distance_m, 2 * options_.gate.angle_rad};
   std::vector<Track> kept;
@@ -85,16 +75,30 @@ void Tracks::prune() {
   tracks_ = std::move(kept);
 }
 
+/// Of the oldest spot that sees what a newer one sees as well, or simply the oldest.
+void Tracks::forget_one() {
+  const auto repeated = [this](std::size_t i) {
+    return std::any_of(
+        spots_.begin() + static_cast<std::ptrdiff_t>(i) + 1, spots_.end(), [&](const auto& later) {
+          return same_place(spots_[i]->T_odom_sensor(), later->T_odom_sensor(), options_.belief.view);
+        });
+  };
+  std::ptrdiff_t out = 0;
+  for (std::size_t i = 0; i < spots_.size(); ++i)
+    if (repeated(i)) {
+      out = static_cast<std::ptrdiff_t>(i);
+      break;
+    }
+  spots_.erase(spots_.begin() + out);
+  for (Track& track : tracks_) track.evidence.erase(track.evidence.begin() + out);
+}
+
 void Tracks::add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypothesis>& found) {
   spots_.push_back(spot);
-  if (spots_.size() > options_.memory) {
-    spots_.pop_front();
-    for (Track& track : tracks_) {
-      track.scores.pop_front();
-      track.found_own.pop_front();
-      track.fits.pop_front();
-    }
-  }
+  if (spots_.size() > options_.memory) forget_one();
+  std::vector<Pose> T_odom_sensors;
+  for (const auto& known : spots_) T_odom_sensors.push_back(known->T_odom_sensor());
+  weights_ = weights_of(T_odom_sensors, options_.belief);
   std::vector<bool> taken(found.size(), false);
   for (Track& track : tracks_) extend(&track, *spot, found, &taken);
   for (std::size_t i = 0; i < found.size(); ++i)
@@ -107,9 +111,10 @@ void Tracks::clear() {
   tracks_.clear();
 }
 
-double Tracks::lead() const {
-  if (tracks_.empty()) return 0;
-  return tracks_.front().total() - (tracks_.size() > 1 ? tracks_[1].total() : 0.0);
+double Tracks::log_odds() const {
+  std::vector<double> evidence;
+  for (const Track& track : tracks_) evidence.push_back(total(track));
+  return log_odds_of(0, evidence, options_.belief);
 }
 
 }  // namespace liloc

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "server/localization/belief.hpp"
 #include "server/localization/spot_solver.hpp"
 
 namespace liloc {
@@ -11,14 +12,9 @@ namespace liloc {
 /// One answer and what each of the last spots says of it.
 struct Track {
   Pose T_map_odom = Pose::Identity();
-  std::deque<double> scores;   ///< one per spot in memory, newest last
-  std::deque<bool> found_own;  ///< whether the spot's own search came to it
-  std::deque<bool> fits;       ///< whether the spot, refined from it, stays with it and is not contradicted
-  Hypothesis latest;           ///< at the newest spot
-
-  [[nodiscard]] double total() const;
-  [[nodiscard]] int supports() const;  ///< spots that fit
-  [[nodiscard]] int own_finds() const;
+  std::deque<double> evidence;  ///< one per spot in memory, newest last; see `evidence_of`
+  Hypothesis latest;            ///< at the newest spot
+  bool fits = false;  ///< whether the newest spot, refined from it, stays with it and is not contradicted
 };
 
 struct TrackOptions {
@@ -30,6 +26,7 @@ struct TrackOptions {
   double fits_overlap = 0.93;    ///< least share of agreeing among judged device points
   double fits_map_agree = 0.90;  ///< the same for ceiling points in the device's view
   double fits_bound = 0.5;       ///< least share of agreeing points with a surface along their normal
+  BeliefOptions belief;
 };
 
 /// Whether free space and surfaces bear a pose out: points that lie where a surface was seen must also lie
@@ -39,7 +36,8 @@ struct TrackOptions {
 [[nodiscard]] double bound_share(const Hypothesis& hypothesis);
 
 /// The tracks of one odometry segment. Each new spot is compared with every track, and each new track with the
-/// spots before it, so that all are weighed by the same evidence. Not thread-safe.
+/// spots before it, so that all are weighed by the same evidence. Of spots that see the same the older ones are
+/// forgotten first. Not thread-safe.
 class Tracks {
  public:
   explicit Tracks(TrackOptions options = {}) : options_(options) {}
@@ -50,17 +48,20 @@ class Tracks {
 
   [[nodiscard]] const std::vector<Track>& best_first() const { return tracks_; }
   [[nodiscard]] std::size_t spots() const { return spots_.size(); }
-  /// Total score of the best over that of the second, both over all spots in memory, in points of score.
-  [[nodiscard]] double lead() const;
+  /// Of the best track, over all spots in memory, against the others and elsewhere. Precondition: there is one.
+  [[nodiscard]] double log_odds() const;
 
  private:
   void extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found,
               std::vector<bool>* taken) const;
   [[nodiscard]] Track founded(const Hypothesis& hypothesis) const;
+  void forget_one();
+  [[nodiscard]] double total(const Track& track) const;
   void prune();
 
   TrackOptions options_;
   std::deque<std::shared_ptr<const Spot>> spots_;
+  std::vector<double> weights_;  ///< of the spots
   std::vector<Track> tracks_;
 };
 

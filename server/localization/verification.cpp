@@ -7,39 +7,28 @@ bool sure(const PoseEstimate& estimate, const VerifyOptions& options) {
   return estimate.sd_rad() <= options.verified_sd_rad && estimate.sd_m() <= options.verified_sd_m;
 }
 
+bool clean(const Hypothesis& here, const PoseEstimate& estimate, const VerifyOptions& options) {
+  return fits(here, options.tracks) && here.judgement.map_agree >= options.verified_map_agree &&
+         here.judgement.overlap() >= options.verified_overlap && sure(estimate, options);
+}
+
 }  // namespace
 
 bool conclusive(const Evidence& evidence, const VerifyOptions& options) {
-  if (!evidence.own || !fits(*evidence.own, options.tracks)) return false;
-  const Judgement& judgement = evidence.own->judgement;
-  return judgement.agree >= options.conclusive_agree && judgement.overlap() >= options.conclusive_overlap &&
-         judgement.map_agree >= options.conclusive_overlap && evidence.margin >= options.conclusive_margin &&
-         sure(evidence.own_estimate, options);
+  return evidence.own && evidence.own_log_odds >= options.log_odds_few &&
+         clean(*evidence.own, evidence.own_estimate, options);
 }
 
 bool led(const Evidence& evidence, const VerifyOptions& options) {
-  const bool rivalled =
-      evidence.rival_supports >= options.rival_spots && evidence.rival_supports >= evidence.supports - 1;
-  return !rivalled && evidence.lead_per_spot >= options.lead_per_spot;
+  return evidence.log_odds >= (evidence.spots < options.spots ? options.log_odds_few : options.log_odds);
 }
 
-bool seconded(const Evidence& evidence, const VerifyOptions& options) {
-  return evidence.own && evidence.best && led(evidence, options) &&
-         same_place(evidence.own->T_map_sensor(), evidence.best->T_map_sensor(), options.tracks.gate);
-}
-
-std::optional<Reason> confirmed(const Evidence& evidence, const VerifyOptions& options) {
-  const bool enough = evidence.supports >= options.spots && led(evidence, options);
-  const bool balance = evidence.best && evidence.best->judgement.score > 0 &&  // more agrees than contradicts
-                       evidence.best->judgement.map_agree >= options.confirmed_map_agree &&
-                       evidence.best->judgement.agree >= options.confirmed_agree;
-  return enough && balance && holds(evidence, options) ? evidence.chain : std::nullopt;
+bool confirmed(const Evidence& evidence, const VerifyOptions& options) {
+  return led(evidence, options) && holds(evidence, options);
 }
 
 bool holds(const Evidence& evidence, const VerifyOptions& options) {
-  return follows(evidence, options) && evidence.best->judgement.map_agree >= options.verified_map_agree &&
-         evidence.best->judgement.overlap() >= options.verified_overlap &&
-         sure(evidence.best_estimate, options);
+  return follows(evidence, options) && clean(*evidence.best, evidence.best_estimate, options);
 }
 
 bool contradicted(const Evidence& evidence, const VerifyOptions& options) {

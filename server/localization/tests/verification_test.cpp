@@ -23,60 +23,62 @@ PoseEstimate sure_at(double x_m) {
   return estimate;
 }
 
-/// Three spots that agree on one place.
-Evidence three_spots() {
+/// Spots that agree on one place.
+Evidence agreeing_spots() {
   Evidence e;
   e.own = e.best = clean_at(1);
   e.own_estimate = e.best_estimate = sure_at(1);
   e.margin = 1;
   e.stayed = true;
-  e.supports = 3;
-  e.lead_per_spot = 1;
-  e.chain = Reason::confirmed;
+  e.spots = 5;
+  e.log_odds = e.own_log_odds = kOptions.log_odds_few;
   return e;
 }
 
-TEST(Verification, ThreeSpotsThatAgreeDecide) {
-  EXPECT_EQ(confirmed(three_spots(), kOptions), Reason::confirmed);
-  EXPECT_TRUE(conclusive(three_spots(), kOptions));
-  EXPECT_TRUE(seconded(three_spots(), kOptions));
+TEST(Verification, SpotsThatAgreeDecideAndSoMayOne) {
+  EXPECT_TRUE(confirmed(agreeing_spots(), kOptions));
+  EXPECT_TRUE(conclusive(agreeing_spots(), kOptions));
 }
 
-TEST(Verification, NoLeadCountsOverAPlaceThatAsManySpotsFit) {
-  Evidence e = three_spots();
-  for (const int rival : {2, 3}) {
-    e.rival_supports = rival;
-    EXPECT_FALSE(led(e, kOptions)) << rival;
-    EXPECT_FALSE(confirmed(e, kOptions)) << rival;
-    EXPECT_FALSE(seconded(e, kOptions)) << rival;
+TEST(Verification, OddsDecideBeforeAPlaceIsBelievedAndNotAfterwards) {
+  Evidence e = agreeing_spots();
+  e.log_odds = kOptions.log_odds - 0.01;
+  EXPECT_FALSE(confirmed(e, kOptions));
+  EXPECT_TRUE(holds(e, kOptions));
+  EXPECT_TRUE(conclusive(e, kOptions)) << "a spot alone is asked by its own odds";
+  e.own_log_odds = kOptions.log_odds;
+  EXPECT_FALSE(conclusive(e, kOptions));
+}
+
+TEST(Verification, FewSpotsMustBeSurer) {
+  Evidence e = agreeing_spots();
+  e.log_odds = kOptions.log_odds;
+  for (const std::size_t spots : {1, 2, 3, 5}) {
+    e.spots = spots;
+    EXPECT_EQ(led(e, kOptions), spots >= 3) << spots;
   }
-  e.rival_supports = 1;
-  EXPECT_TRUE(led(e, kOptions));
-  e.supports = 5;
-  e.rival_supports = 3;
-  EXPECT_TRUE(led(e, kOptions));
 }
 
-TEST(Verification, ASmallLeadOrAPlaceSeenLittleDecidesNothing) {
-  Evidence e = three_spots();
-  e.lead_per_spot = kOptions.lead_per_spot - 0.01;
+TEST(Verification, TheNewestSpotMustBearThePlaceOut) {
+  Evidence e = agreeing_spots();
+  e.stayed = false;
   EXPECT_FALSE(confirmed(e, kOptions));
-  e = three_spots();
-  e.best->judgement.agree = kOptions.confirmed_agree - 0.01;
+  e = agreeing_spots();
+  e.best->judgement.conflict = 0.03;
   EXPECT_FALSE(confirmed(e, kOptions));
-  EXPECT_TRUE(holds(e, kOptions)) << "once believed it may go on";
+  e.own = e.best;
+  EXPECT_FALSE(conclusive(e, kOptions));
 }
 
-TEST(Verification, ASpotThatFindsAnotherPlaceIsNotSeconded) {
-  Evidence e = three_spots();
-  e.own = clean_at(4);
-  EXPECT_FALSE(seconded(e, kOptions));
-  e.own.reset();
-  EXPECT_FALSE(seconded(e, kOptions));
+TEST(Verification, WhatIsNotKnownToCentimetresIsNotVerified) {
+  Evidence e = agreeing_spots();
+  e.own_estimate.covariance = e.best_estimate.covariance = Matrix6d::Identity();
+  EXPECT_FALSE(confirmed(e, kOptions));
+  EXPECT_FALSE(conclusive(e, kOptions));
 }
 
 TEST(Verification, SeenLittleIsNoContradiction) {
-  Evidence e = three_spots();
+  Evidence e = agreeing_spots();
   EXPECT_FALSE(contradicted(e, kOptions));
   e.best->judgement = {0.02, 0.0, 0.0, 0.0, 0.0, 0.02};  // nothing in view of either side
   EXPECT_FALSE(contradicted(e, kOptions));
@@ -90,7 +92,7 @@ TEST(Verification, SeenLittleIsNoContradiction) {
 }
 
 TEST(Verification, WhatConflictsWithTheDeviceDoesNotHold) {
-  Evidence e = three_spots();
+  Evidence e = agreeing_spots();
   EXPECT_TRUE(holds(e, kOptions));
   e.best->judgement.conflict = 0.03;
   EXPECT_FALSE(holds(e, kOptions));

@@ -10,6 +10,14 @@ double largest_sd(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff(), 0.0));
 }
 
+Vector6d innovation_of(const PoseEstimate& predicted, const PoseEstimate& seen) {
+  const Eigen::Matrix3d R = predicted.T_map_sensor.linear().transpose();
+  Vector6d innovation;
+  innovation << so3_log(R * seen.T_map_sensor.linear()),
+      R * (seen.T_map_sensor.translation() - predicted.T_map_sensor.translation());
+  return innovation;
+}
+
 }  // namespace
 
 double PoseEstimate::sd_rad() const {
@@ -30,18 +38,15 @@ PoseEstimate carried(const PoseEstimate& before, const Pose& T_before_after, dou
   return after;
 }
 
+double surprise_of(const PoseEstimate& predicted, const PoseEstimate& seen) {
+  const Vector6d innovation = innovation_of(predicted, seen);
+  return innovation.dot((predicted.covariance + seen.covariance).ldlt().solve(innovation));
+}
+
 PoseEstimate fused(PoseEstimate predicted, const PoseEstimate& seen, double surprise_limit) {
-  const Eigen::Matrix3d R = predicted.T_map_sensor.linear().transpose();
-  Vector6d innovation;
-  innovation << so3_log(R * seen.T_map_sensor.linear()),
-      R * (seen.T_map_sensor.translation() - predicted.T_map_sensor.translation());
-  const auto sum = [&] { return Matrix6d(predicted.covariance + seen.covariance); };
-  for (int i = 0; i < 20; ++i) {
-    const double surprise = innovation.dot(sum().ldlt().solve(innovation));
-    if (surprise <= surprise_limit) break;
-    predicted.covariance *= 2;
-  }
-  const Matrix6d gain = predicted.covariance * sum().inverse();
+  for (int i = 0; i < 20 && surprise_of(predicted, seen) > surprise_limit; ++i) predicted.covariance *= 2;
+  const Vector6d innovation = innovation_of(predicted, seen);
+  const Matrix6d gain = predicted.covariance * (predicted.covariance + seen.covariance).inverse();
   const Vector6d step = gain * innovation;
   PoseEstimate result = predicted;
   result.T_map_sensor.linear() = predicted.T_map_sensor.linear() * so3_exp(step.head<3>());

@@ -18,10 +18,13 @@ struct PoseEstimate {
 [[nodiscard]] PoseEstimate carried(const PoseEstimate& before, const Pose& T_before_after, double sd_rad,
                                    double sd_m);
 
-/// Both weighed by their covariances. Where they contradict each other beyond `surprise_limit` (squared
-/// distance over the covariances, 6 on average), the prediction was surer of itself than it should have been:
-/// it is widened until it no longer does.
+/// Squared distance of the two over their covariances: 6 on average.
+[[nodiscard]] double surprise_of(const PoseEstimate& predicted, const PoseEstimate& seen);
+constexpr double kMostSurprise = 22.5;  ///< one in a thousand
+
+/// Both weighed by their covariances. Where they contradict each other beyond `surprise_limit`, the prediction
+/// was surer of itself than it should have been: it is widened until it no longer does.
 [[nodiscard]] PoseEstimate fused(PoseEstimate predicted, const PoseEstimate& seen,
-                                 double surprise_limit = 22.5);
+                                 double surprise_limit = kMostSurprise);
 
 }  // namespace liloc

@@ -179,9 +179,8 @@ void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<
                               SpotReply* reply) {
   followed_ = follow(request, *spot, reply);
   weak_in_a_row_ = followed_ ? 0 : weak_in_a_row_ + 1;
-  const bool doubted = contradicted(evidence_, verify_) || weak_in_a_row_ > verify_.patience;
-  if (doubted && !doubted_) tracks_.clear();  // what odometry tied to the place before may be lost
-  doubted_ = doubted;
+  if (weak_in_a_row_ == 1) tracks_.clear();  // what odometry tied to the place before may be lost
+  doubted_ = contradicted(evidence_, verify_) || weak_in_a_row_ > verify_.patience;
   conclude(followed_ ? SpotStatus::verified : SpotStatus::provisional,
            followed_ ? Reason::confirmed : Reason::weak, reply);
   // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that

@@ -16,6 +16,7 @@ bool clean(const Hypothesis& here, const PoseEstimate& estimate, const VerifyOpt
 
 bool conclusive(const Evidence& evidence, const VerifyOptions& options) {
   return evidence.own && evidence.own_log_odds >= options.log_odds_few &&
+         evidence.own->judgement.agree >= options.first_agree &&
          clean(*evidence.own, evidence.own_estimate, options);
 }
 
@@ -24,7 +25,8 @@ bool led(const Evidence& evidence, const VerifyOptions& options) {
 }
 
 bool confirmed(const Evidence& evidence, const VerifyOptions& options) {
-  return led(evidence, options) && holds(evidence, options);
+  return led(evidence, options) && holds(evidence, options) &&
+         evidence.best->judgement.agree >= options.first_agree;
 }
 
 bool holds(const Evidence& evidence, const VerifyOptions& options) {

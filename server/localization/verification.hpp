@@ -14,7 +14,9 @@ struct VerifyOptions {
   TrackOptions tracks;
   std::size_t spots = 3;      ///< the paper's number
   double log_odds = 3.4;      ///< least, of a place against all others, to be believed at first ...
-  double log_odds_few = 5.5;  ///< ... and while there are fewer spots: what is peculiar to one averages out
+  double log_odds_few = 5.0;  ///< ... and while there are fewer spots: what is peculiar to one averages out
+  double first_agree = 0.35;  ///< least share of device points on seen surfaces, at first: a twin of the place
+                              ///< may lie where the ceiling does not look
   double verified_map_agree = 0.96;  ///< least share of agreeing among judged ceiling points ...
   double verified_overlap = 0.98;    ///< ... and among judged device points
   double verified_sd_rad = radians(2.0), verified_sd_m = 0.08;  ///< most, in any direction
@@ -22,7 +24,7 @@ struct VerifyOptions {
   double prior_residual_sd_m = 0.05;                            ///< of a pair of it
   double step_sd_rad = radians(0.2),
          step_sd_m = 0.008;  ///< least growth between spots: calibration and clocks err too
-  int patience = 8;  ///< weak spots that nothing contradicts before the device may be believed to be elsewhere
+  int patience = 4;  ///< weak spots that nothing contradicts before the device may be believed to be elsewhere
   int research_every = 6;  ///< while tracking, every so many spots the whole room is searched
 };
 

@@ -59,6 +59,15 @@ TEST(Verification, FewSpotsMustBeSurer) {
   }
 }
 
+TEST(Verification, APlaceSeenLittleMayBeFollowedButNotBelievedAtFirst) {
+  Evidence e = agreeing_spots();
+  e.own->judgement.agree = e.best->judgement.agree = kOptions.first_agree - 0.01;
+  e.own->alignment.pair_share = e.best->alignment.pair_share = e.own->judgement.agree;
+  EXPECT_FALSE(confirmed(e, kOptions));
+  EXPECT_FALSE(conclusive(e, kOptions));
+  EXPECT_TRUE(holds(e, kOptions));
+}
+
 TEST(Verification, TheNewestSpotMustBearThePlaceOut) {
   Evidence e = agreeing_spots();
   e.stayed = false;

@@ -27,9 +27,9 @@ int Climber::score(const Eigen::Vector4d& pose, std::size_t points) {
   const Eigen::Vector3f t = pose.head<3>().cast<float>();
   const std::span<std::int32_t> worths(worths_.data(), std::min(points, level_.size()));
   field_.look_up(probes, t, worths);
-  if (!moving_.empty())
+  if (movers_ != nullptr)
     for (std::size_t i = 0; i < worths.size(); ++i)
-      if (worths[i] < 0 && moving_.at(Eigen::Vector3f(probes.x[i], probes.y[i], probes.z[i]) + t))
+      if (worths[i] < 0 && movers_->at(Eigen::Vector3f(probes.x[i], probes.y[i], probes.z[i]) + t))
         worths[i] = 0;
   return std::accumulate(worths.begin(), worths.end(), 0);
 }

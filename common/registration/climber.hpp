@@ -3,7 +3,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "common/registration/moving_mask.hpp"
+#include "common/registration/score_field.hpp"
 
 namespace liloc {
 
@@ -14,12 +14,12 @@ struct LevelPose {
 };
 
 /// Climbs level poses on a field, axis by axis. It remembers the points as turned by each yaw that it has
-/// tried, which is nothing but time saved; one thread. The field and the mask outlive it.
+/// tried, which is nothing but time saved; one thread. The field and the movers (null: none) outlive it.
 class Climber {
  public:
   /// Points about the device and their normals, turned into the map's axes at yaw 0.
-  Climber(const ScoreField& field, const MovingMask& moving, const Eigen::Vector3d& up_map, const Cloud& level)
-      : field_(field), moving_(moving), up_map_(up_map), level_(level), worths_(level.size()) {}
+  Climber(const ScoreField& field, const Movers* movers, const Eigen::Vector3d& up_map, const Cloud& level)
+      : field_(field), movers_(movers), up_map_(up_map), level_(level), worths_(level.size()) {}
 
   struct Steps {
     double shift_m = 0.1, turn_rad = 0.0436;  ///< at first
@@ -34,7 +34,7 @@ class Climber {
   bool improve(double shift_m, double turn_rad, std::size_t points, LevelPose* best);
 
   const ScoreField& field_;
-  const MovingMask& moving_;
+  const Movers* const movers_;
   const Eigen::Vector3d up_map_;
   const Cloud& level_;
   std::unordered_map<long, ScoreField::Probes> turned_;  ///< by yaw in microradians

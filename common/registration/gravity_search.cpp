@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <random>
 #include <thread>
 #include <tuple>
@@ -19,7 +18,6 @@ namespace {
 
 constexpr std::size_t kFirstPoints = 160;  // that score every place
 constexpr std::size_t kHeap = 4000;        // places that survive, per thread
-constexpr double kMovingReach_m = 0.2;     // what the ceiling sees of somebody is not what a device sees
 constexpr Climber::Steps kFirstClimb{0.1, radians(2.5), 0, 2, 80};
 constexpr Climber::Steps kSecondClimb{0.1, radians(2.5), 2, 6, 240};
 
@@ -175,16 +173,14 @@ std::vector<LevelPose> climb(Climber& climber, const ScoreField& coarse, const s
 
 std::vector<Candidate> gravity_search(const Target& target, const Query& query,
                                       const Eigen::Vector3d& up_sensor, const GravitySearchOptions& options) {
-  const ScoreField& field = target->field_coarse();
+  const ScoreField& field = target.field_coarse();
   if (field.empty() || query.sparse.empty()) return {};
-  const MovingMask moving(field, target.moving_map, kMovingReach_m);
-  const std::optional<ScoreField> masked =
-      moving.empty() ? std::nullopt : std::optional<ScoreField>(moving.applied());
   const Eigen::Matrix3d R_level_sensor =
       Eigen::Quaterniond::FromTwoVectors(up_sensor, options.up_map).toRotationMatrix();
   const Cloud level = level_points(query, R_level_sensor.cast<float>());
-  const std::vector<Cell> cells = search_coarse(masked ? *masked : field, level, options);
-  Climber climber(target->field_fine(), moving, options.up_map, level);
+  const std::vector<Cell> cells = search_coarse(field, level, options);
+  Climber climber(target->field_fine(), target.present ? &target.present->movers : nullptr, options.up_map,
+                  level);
   std::vector<Candidate> candidates;
   for (const LevelPose& top : climb(climber, field, cells, options)) {
     Candidate candidate;

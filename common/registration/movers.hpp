@@ -20,6 +20,16 @@ class Movers {
     return !cells_.empty() && (q.array() >= 0).all() && (q.array() < extent_.array()).all() &&
            cells_[index(q.cast<int>())] != 0;
   }
+  /// Calls visit(p_map) in the middle of each cell, 0.08 m wide or more, within reach.
+  template <class Visit>
+  void for_each_place(const Visit& visit) const {
+    std::size_t i = 0;
+    for (int z = 0; z < size_.z(); ++z)
+      for (int y = 0; y < size_.y(); ++y)
+        for (int x = 0; x < size_.x(); ++x)
+          if (cells_[i++] != 0)
+            visit(Eigen::Vector3f(origin_ + (Eigen::Vector3f(x, y, z).array() + 0.5F).matrix() / inverse_));
+  }
 
  private:
   [[nodiscard]] std::size_t index(const Eigen::Vector3i& cell) const {

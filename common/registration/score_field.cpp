@@ -129,16 +129,16 @@ void ScoreField::look_up(const Probes& probes, const Eigen::Vector3f& shift,
   for (std::int32_t& worth : worths) worth = cells_[static_cast<std::size_t>(worth)];
 }
 
-void ScoreField::forget_free_space(const std::vector<std::uint8_t>& cells) {
-  std::size_t i = 0;
-  for (int z = 0; z < size_.z(); ++z)
-    for (int y = 0; y < size_.y(); ++y)
-      for (int x = 0; x < size_.x(); ++x)
-        if (cells[i++] != 0)
-          for (int plane = 0; plane <= kAny; ++plane) {
-            std::int8_t& held = cells_[index(x, y, z, plane)];
-            held = std::max<std::int8_t>(held, 0);
-          }
+void ScoreField::forget_free_space(const Movers& movers) {
+  movers.for_each_place([&](const Eigen::Vector3f& p_map) {
+    const Eigen::Array3f q = ((p_map - origin_) * inverse_).array();
+    if (!((q >= 0).all() && (q < extent_.array()).all())) return;
+    const Eigen::Array3i cell = q.cast<int>();
+    for (int plane = 0; plane <= kAny; ++plane) {
+      std::int8_t& held = cells_[index(cell.x(), cell.y(), cell.z(), plane)];
+      held = std::max<std::int8_t>(held, 0);
+    }
+  });
 }
 
 }  // namespace liloc

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/registration/field_layers.hpp"
+#include "common/registration/movers.hpp"
 
 namespace liloc {
 
@@ -42,8 +43,8 @@ class ScoreField {
   /// What the first of the probes, one per `worths`, are worth when they are shifted: `at` for many points.
   void look_up(const Probes& probes, const Eigen::Vector3f& shift, std::span<std::int32_t> worths) const;
 
-  /// Makes free space unknown where `cells` (x fastest, one per cell of a plane) are not 0.
-  void forget_free_space(const std::vector<std::uint8_t>& cells);
+  /// Makes free space unknown where somebody moves: the field is of the still room and calls it empty.
+  void forget_free_space(const Movers& movers);
 
   [[nodiscard]] bool empty() const { return cells_.empty(); }
   [[nodiscard]] double cell_m() const { return cell_; }

@@ -125,10 +125,21 @@ const ScoreField& Surfaces::field_fine() const {
   return field_fine_;
 }
 
-Present::Present(const Surfaces& surfaces, const std::vector<SightView>& views, const Cloud& moving_map)
+Present::Present(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
+                 const Cloud& moving_map)
     : movers(moving_map, kBeside_m),
-      stale(stale_points(surfaces.coarse, views, Movers(moving_map, kAround_m))),
-      map_points(map_points_of(surfaces.coarse, stale)) {}
+      stale(stale_points(surfaces->coarse, views, Movers(moving_map, kAround_m))),
+      map_points(map_points_of(surfaces->coarse, stale)),
+      surfaces_(std::move(surfaces)) {}
+
+const ScoreField& Present::field_coarse() const {
+  if (movers.empty()) return surfaces_->field_coarse();
+  std::call_once(once_, [this] {
+    field_coarse_ = surfaces_->field_coarse();
+    field_coarse_.forget_free_space(movers);
+  });
+  return field_coarse_;
+}
 
 Target make_target(const Cloud& cloud_map, std::vector<SightView> views, double voxel_size_m) {
   auto surfaces = std::make_shared<const Surfaces>(cloud_map, views, voxel_size_m);

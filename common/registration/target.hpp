@@ -52,22 +52,35 @@ class Surfaces {
 };
 
 /// Where the ceiling's word does not count right now, because somebody moves there or has just left.
-struct Present {
-  Present(const Surfaces& surfaces, const std::vector<SightView>& views, const Cloud& moving_map);
+class Present {
+ public:
+  /// `moving_map`: what the ceiling sees move, thinned.
+  Present(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
+          const Cloud& moving_map);
 
   const Movers movers;                    ///< around whom lines of sight past them say nothing
   const std::vector<std::uint8_t> stale;  ///< of each point of Surfaces::coarse: hidden, or not there any more
   const MapPoints map_points;             ///< the same points for the judge
+
+  /// The room's, to which the air around whoever moves is unknown. The first caller makes it.
+  [[nodiscard]] const ScoreField& field_coarse() const;
+
+ private:
+  const std::shared_ptr<const Surfaces> surfaces_;
+  mutable std::once_flag once_;
+  mutable ScoreField field_coarse_;
 };
 
 /// What a spot is registered against: surfaces, which many moments share, and what the ceiling sees right now.
 struct Target {
   std::shared_ptr<const Surfaces> surfaces;
   std::vector<SightView> views;                 ///< empty when two bare clouds are aligned
-  Cloud moving_map = {};                        ///< what the ceiling sees move right now, thinned
   std::shared_ptr<const Present> present = {};  ///< null: nothing moves
 
   [[nodiscard]] const Surfaces* operator->() const { return surfaces.get(); }
+  [[nodiscard]] const ScoreField& field_coarse() const {
+    return present ? present->field_coarse() : surfaces->field_coarse();
+  }
 };
 
 /// Both from one moment.

@@ -111,11 +111,12 @@ StampNs Snapshot::stamp_near(StampNs stamp_ns) const {
 const Target& Snapshot::target() const {
   std::call_once(once_, [this] {
     target_.surfaces = room_->surfaces();
+    Cloud moving_map;
     for (const auto& frame : frames_) {
       target_.views.push_back(frame->view());
-      append(target_.moving_map, frame->moving_map());
+      append(moving_map, frame->moving_map());
     }
-    target_.present = std::make_shared<const Present>(*target_.surfaces, target_.views, target_.moving_map);
+    target_.present = std::make_shared<const Present>(target_.surfaces, target_.views, moving_map);
     has_target_ = true;
   });
   return target_;

@@ -123,25 +123,24 @@ TEST_P(FieldLaw, WhoeverMovesMakesEmptySpaceUnknownAndLeavesSurfaces) {
   std::uniform_real_distribution<float> x(1, 5), y(1, 4), z(0.6F, 2);
   do empty = {x(rng), y(rng), z(rng)};
   while (field.at(empty, ScoreField::kUp) >= 0);
-  const MovingMask mask(field, {{empty}, {}}, 0.2);
-  EXPECT_TRUE(mask.at(empty));
-  EXPECT_FALSE(mask.at(empty + Eigen::Vector3f(1.5F, 0, 0)));
-  const ScoreField masked = mask.applied();
+  const Present present(w.target.surfaces, w.target.views, {{empty}, {}});
+  EXPECT_TRUE(present.movers.at(empty));
+  EXPECT_FALSE(present.movers.at(empty + Eigen::Vector3f(1.5F, 0, 0)));
+  const ScoreField& masked = present.field_coarse();
   EXPECT_EQ(masked.at(empty, ScoreField::kUp), 0);
   for (const Eigen::Vector3f& p : w.target->coarse.points)
     ASSERT_EQ(masked.at(p, ScoreField::kAny), field.at(p, ScoreField::kAny));
-  EXPECT_TRUE(MovingMask(field, {}, 0.2).empty());
+  EXPECT_EQ(&Present(w.target.surfaces, w.target.views, {}).field_coarse(), &field);
 }
 
 TEST_P(FieldLaw, ClimbingEndsNearTheDeviceAndNeverLower) {
   const WatchedRoom w = watched_room(GetParam());
-  const MovingMask nobody(w.target->field_fine(), {}, 0.2);
   const Eigen::Matrix3d R =
       Eigen::Quaterniond::FromTwoVectors(w.up_device, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   Pose level = Pose::Identity();
   level.linear() = R;
   const Cloud points = transformed(level, w.query.sparse);
-  Climber climber(w.target->field_fine(), nobody, Eigen::Vector3d::UnitZ(), points);
+  Climber climber(w.target->field_fine(), nullptr, Eigen::Vector3d::UnitZ(), points);
   const Eigen::Matrix3d turn = w.T_map_device.linear() * R.transpose();
   const double yaw = std::atan2(turn(1, 0), turn(0, 0));
   Eigen::Vector4d start;

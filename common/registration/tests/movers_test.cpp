@@ -64,8 +64,7 @@ TEST_P(MoversLaw, WhomTheCeilingSeesMoveTheDeviceMaySeeToo) {
   Target target = w.target;
   const Judgement unaware = judge(target, query, query.medium, w.T_map_device, 0.05);
   ASSERT_GT(unaware.conflict, 0.02);
-  target.moving_map = seen_moving(w.room, now);
-  target.present = std::make_shared<const Present>(*target.surfaces, target.views, target.moving_map);
+  target.present = std::make_shared<const Present>(target.surfaces, target.views, seen_moving(w.room, now));
   const Judgement aware = judge(target, query, query.medium, w.T_map_device, 0.05);
   EXPECT_LT(aware.conflict, 0.2 * unaware.conflict);
   EXPECT_EQ(aware.agree, unaware.agree) << "nobody is a surface of the room";
@@ -78,7 +77,7 @@ TEST_P(MoversLaw, WhatTheCeilingLooksThroughByNowIsStale) {
   const scene::Box gone = person_before(w);
   before.furniture.push_back(gone);
   const Target was = watch(before, GetParam());
-  const Present present(*was.surfaces, w.target.views, {});
+  const Present present(was.surfaces, w.target.views, {});
   int left = 0, stale = 0, elsewhere = 0;
   for (std::size_t i = 0; i < was->coarse.size(); ++i) {
     const Eigen::Vector3d p = was->coarse.points[i].cast<double>();

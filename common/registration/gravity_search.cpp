@@ -179,8 +179,7 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query,
       Eigen::Quaterniond::FromTwoVectors(up_sensor, options.up_map).toRotationMatrix();
   const Cloud level = level_points(query, R_level_sensor.cast<float>());
   const std::vector<Cell> cells = search_coarse(field, level, options);
-  Climber climber(target->field_fine(), target.present ? &target.present->movers : nullptr, options.up_map,
-                  level);
+  Climber climber(target->field_fine(), target.movers(), options.up_map, level);
   std::vector<Candidate> candidates;
   for (const LevelPose& top : climb(climber, field, cells, options)) {
     Candidate candidate;

@@ -14,7 +14,7 @@ Sight word_of(const Target& target, const Eigen::Vector3f& p_map, float toleranc
     if (sight == Sight::agrees) return sight;
     if (sight == Sight::conflict) word = sight;
   }
-  const bool excused = word == Sight::conflict && target.present && target.present->movers.at(p_map);
+  const bool excused = word == Sight::conflict && target.movers() != nullptr && target.movers()->at(p_map);
   return excused ? Sight::unseen : word;
 }
 

@@ -9,7 +9,22 @@ struct Side {
   const Cloud& target;
   const NearestGrid& nearest;
   const Cloud& source;
+  const Movers* movers = nullptr;  ///< beside whom nothing is paired: they are no part of the target
+
+  /// The index of a source point's partner, or NearestGrid::kNone.
+  [[nodiscard]] std::int32_t partner_of(const Eigen::Vector3f& p_target) const {
+    const std::int32_t j = nearest.nearest(p_target);
+    return j != NearestGrid::kNone && movers != nullptr && movers->at(p_target) ? NearestGrid::kNone : j;
+  }
 };
+
+/// A target, thinned and whole, and a cloud of the query.
+[[nodiscard]] inline Side coarse_side(const Target& target, const Cloud& source) {
+  return {target->coarse, target->nearest_coarse, source, target.movers()};
+}
+[[nodiscard]] inline Side fine_side(const Target& target, const Cloud& source) {
+  return {target->cloud, target->nearest, source, target.movers()};
+}
 
 /// Calls visit(source index, arm, normal of the pair, offset, weight) for each pair; the normal is zero where a
 /// side has none. `arm` and all else in the target's axes.
@@ -24,7 +39,7 @@ void for_each_pair(const Side& side, const Pose& T, double distance_m, double mi
   for (std::size_t i = 0; i < side.source.size(); ++i) {
     const Eigen::Vector3f arm = Tf.linear() * side.source.points[i];
     const Eigen::Vector3f p = arm + Tf.translation();
-    const std::int32_t j = side.nearest.nearest(p);
+    const std::int32_t j = side.partner_of(p);
     if (j == NearestGrid::kNone) continue;
     const Eigen::Vector3f offset = p - side.target.points[static_cast<std::size_t>(j)];
     const float squared = offset.squaredNorm();

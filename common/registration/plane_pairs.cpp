@@ -94,7 +94,7 @@ PlanePairs::PlanePairs(const Side& side)
 void PlanePairs::find(const Eigen::Vector3f& t) {
   for (std::size_t i = 0; i < side_.source.size(); ++i) {
     const Eigen::Vector3f p = Eigen::Vector3f(arms_.x[i], arms_.y[i], arms_.z[i]) + t;
-    const std::int32_t j = side_.nearest.nearest(p);
+    const std::int32_t j = side_.partner_of(p);
     if (j == NearestGrid::kNone) {
       offsets_.set(i, {kFar, 0, 0});
       continue;

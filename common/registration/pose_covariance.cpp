@@ -34,8 +34,7 @@ std::vector<Pair> pairs_by_patch(const Target& target, const Query& query, const
   std::vector<Pair> pairs;
   pairs.reserve(query.medium.size());
   const Eigen::Matrix3f R_source_target = T.linear().transpose().cast<float>();
-  for_each_pair({target->cloud, target->nearest, query.medium}, T, options.max_pair_distance_m,
-                options.min_normal_agreement,
+  for_each_pair(fine_side(target, query.medium), T, options.max_pair_distance_m, options.min_normal_agreement,
                 [&](std::size_t i, const Eigen::Vector3f&, const Eigen::Vector3f& normal,
                     const Eigen::Vector3f& offset, double weight) {
                   const Eigen::Vector3f& p = query.medium.points[i];

@@ -129,7 +129,7 @@ Fit fit_of(const Target& target, const Cloud& cloud_source, const Pose& T_target
 Pose approach(const Target& target, const Query& query, const Pose& T_target_source_guess, int iterations,
               const RefineOptions& options) {
   Pose T = T_target_source_guess;
-  Pairs far({target->coarse, target->nearest_coarse, query.sparse}, options);
+  Pairs far(coarse_side(target, query.sparse), options);
   iterate(far, iterations, options.start_distance_m, middle_of(options), nullptr, &T);
   return normalized(T);
 }
@@ -139,11 +139,11 @@ Alignment refine(const Target& target, const Query& query, const Pose& T_target_
   Alignment result;
   Pose T = T_target_source_guess;
   const double middle_m = middle_of(options);
-  Pairs far({target->coarse, target->nearest_coarse, query.sparse}, options);
+  Pairs far(coarse_side(target, query.sparse), options);
   iterate(far, options.sparse_iterations, options.start_distance_m, middle_m, prior, &T);
-  Pairs near({target->coarse, target->nearest_coarse, query.medium}, options);
+  Pairs near(coarse_side(target, query.medium), options);
   iterate(near, options.coarse_iterations, middle_m, middle_m, prior, &T);
-  Pairs fine({target->cloud, target->nearest, query.medium}, options);
+  Pairs fine(fine_side(target, query.medium), options);
   result.converged = iterate(fine, options.fine_iterations, middle_m, options.end_distance_m, prior, &T);
   result.T_target_source = normalized(T);
 

@@ -78,6 +78,10 @@ struct Target {
   std::shared_ptr<const Present> present = {};  ///< null: nothing moves
 
   [[nodiscard]] const Surfaces* operator->() const { return surfaces.get(); }
+  /// Null: nothing moves.
+  [[nodiscard]] const Movers* movers() const {
+    return present && !present->movers.empty() ? &present->movers : nullptr;
+  }
   [[nodiscard]] const ScoreField& field_coarse() const {
     return present ? present->field_coarse() : surfaces->field_coarse();
   }

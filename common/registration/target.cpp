@@ -13,7 +13,7 @@ namespace {
 constexpr FieldOptions kCoarseField{0.2, 0.13, -10, 40};  // padded for devices that see 8 m far
 constexpr FieldOptions kFineField{0.1, 0.08, -40, 0};
 
-constexpr double kBeside_m = 0.2;   // of what is seen of somebody from above: the rest, and a step in 0.1 s
+constexpr double kBeside_m = 0.3;   // of what is seen of somebody from above: the rest, and a step in 0.1 s
 constexpr double kAround_m = 0.45;  // within which they hide a surface from the device, or are one themselves
 constexpr float kGone_m = 0.05F;
 

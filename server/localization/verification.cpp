@@ -1,5 +1,7 @@
 #include "server/localization/verification.hpp"
 
+#include <algorithm>
+
 namespace liloc {
 namespace {
 
@@ -21,7 +23,10 @@ bool conclusive(const Evidence& evidence, const VerifyOptions& options) {
 }
 
 bool led(const Evidence& evidence, const VerifyOptions& options) {
-  return evidence.log_odds >= (evidence.spots < options.spots ? options.log_odds_few : options.log_odds);
+  if (!evidence.best) return false;
+  const double lacks = std::max(0.0, options.much_agrees - evidence.best->judgement.agree);
+  const double many = options.log_odds + options.twin_odds * lacks;
+  return evidence.log_odds >= (evidence.spots < options.spots ? std::max(options.log_odds_few, many) : many);
 }
 
 bool confirmed(const Evidence& evidence, const VerifyOptions& options) {

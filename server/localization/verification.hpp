@@ -17,6 +17,8 @@ struct VerifyOptions {
   double log_odds_few = 5.0;  ///< ... and while there are fewer spots: what is peculiar to one averages out
   double first_agree = 0.35;  ///< least share of device points on seen surfaces, at first: a twin of the place
                               ///< may lie where the ceiling does not look
+  double much_agrees = 0.5;   ///< less than this share makes such a twin likelier ...
+  double twin_odds = 10;      ///< ... by so much in the logarithm, times what lacks
   double verified_map_agree = 0.96;  ///< least share of agreeing among judged ceiling points ...
   double verified_overlap = 0.98;    ///< ... and among judged device points
   double verified_sd_rad = radians(2.0), verified_sd_m = 0.08;  ///< most, in any direction

@@ -50,6 +50,19 @@ TEST(Verification, OddsDecideBeforeAPlaceIsBelievedAndNotAfterwards) {
   EXPECT_FALSE(conclusive(e, kOptions));
 }
 
+TEST(Verification, TheLessTheCeilingSeesOfAPlaceTheSurerOneMustBe) {
+  Evidence e = agreeing_spots();
+  e.log_odds = kOptions.log_odds;
+  for (const double agree : {0.8, 0.5, 0.45, 0.4}) {
+    e.best->judgement.agree = agree;
+    EXPECT_EQ(led(e, kOptions), agree >= kOptions.much_agrees) << agree;
+  }
+  e.log_odds += kOptions.twin_odds * (kOptions.much_agrees - 0.4);
+  EXPECT_TRUE(led(e, kOptions));
+  e.best.reset();
+  EXPECT_FALSE(led(e, kOptions)) << "nothing was found";
+}
+
 TEST(Verification, FewSpotsMustBeSurer) {
   Evidence e = agreeing_spots();
   e.log_odds = kOptions.log_odds;

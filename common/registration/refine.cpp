@@ -106,6 +106,14 @@ bool iterate(Pairs& pairs, int iterations, double from_m, double to_m, const Pos
   return small;
 }
 
+/// How many points of the source may pair: those that are not beside somebody.
+std::size_t unhindered(const Side& side, const Pose& T) {
+  if (side.movers == nullptr) return side.source.size();
+  const Eigen::Isometry3f Tf = T.cast<float>();
+  return static_cast<std::size_t>(std::ranges::count_if(
+      side.source.points, [&](const Eigen::Vector3f& p) { return !side.movers->at(Tf * p); }));
+}
+
 }  // namespace
 
 Fit fit_of(const Target& target, const Cloud& cloud_source, const Pose& T_target_source, double distance_m) {
@@ -149,7 +157,8 @@ Alignment refine(const Target& target, const Query& query, const Pose& T_target_
 
   const NormalEquations sum = fine.at(result.T_target_source, options.end_distance_m);
   result.pairs = sum.pairs;
-  result.pair_share = query.medium.empty() ? 0.0 : sum.pairs / static_cast<double>(query.medium.size());
+  const std::size_t free = unhindered(fine_side(target, query.medium), result.T_target_source);
+  result.pair_share = free == 0 ? 0.0 : sum.pairs / static_cast<double>(free);
   if (sum.pairs >= 12 && sum.weight > 0) {
     result.inlier_rmse_m = std::sqrt(sum.squared / sum.weight);
   }

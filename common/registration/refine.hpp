@@ -23,7 +23,7 @@ struct Alignment {
   double fitness = 0;        ///< share of source points with a target point within one voxel
   double inlier_rmse_m = 0;  ///< distance along the normal, over those
   int pairs = 0;
-  double pair_share = 0;  ///< of the thinned source points
+  double pair_share = 0;  ///< of the thinned source points that are not beside somebody
   bool converged = false;
 };
 

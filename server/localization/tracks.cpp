@@ -6,6 +6,7 @@
 #include "common/registration/settle.hpp"
 
 namespace liloc {
+
 double bound_share(const Hypothesis& hypothesis) {
   return hypothesis.judgement.agree > 0 ? hypothesis.alignment.pair_share / hypothesis.judgement.agree : 0.0;
 }

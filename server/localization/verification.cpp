@@ -24,9 +24,9 @@ bool conclusive(const Evidence& evidence, const VerifyOptions& options) {
 
 bool led(const Evidence& evidence, const VerifyOptions& options) {
   if (!evidence.best) return false;
+  if (evidence.spots < options.spots) return evidence.log_odds >= options.log_odds_few;
   const double lacks = std::max(0.0, options.much_agrees - evidence.best->judgement.agree);
-  const double many = options.log_odds + options.twin_odds * lacks;
-  return evidence.log_odds >= (evidence.spots < options.spots ? std::max(options.log_odds_few, many) : many);
+  return evidence.log_odds >= options.log_odds + options.twin_odds * lacks;
 }
 
 bool confirmed(const Evidence& evidence, const VerifyOptions& options) {

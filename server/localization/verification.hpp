@@ -45,7 +45,8 @@ struct Evidence {
 
 /// Whether one spot decides alone.
 [[nodiscard]] bool conclusive(const Evidence& evidence, const VerifyOptions& options);
-/// Whether the odds of the best track suffice for so many spots.
+/// Whether the odds of the best track suffice for so many spots. Fewer than `spots` are asked for so much that
+/// `twin_odds` would add nothing.
 [[nodiscard]] bool led(const Evidence& evidence, const VerifyOptions& options);
 /// Whether the spots in memory decide.
 [[nodiscard]] bool confirmed(const Evidence& evidence, const VerifyOptions& options);

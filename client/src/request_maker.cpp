@@ -1,5 +1,6 @@
 #include "client/src/request_maker.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "client/src/byte_budget.hpp"
@@ -10,11 +11,17 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kMostLocalPoses = 250;  // a message holds 256; older ones of a long silence are left out
-constexpr std::size_t kLpcPoints = 4000;      // 6 to 7 kB
+constexpr std::size_t kLpcPoints = 4000;      // 6 to 7 kB at 0.05 m
 constexpr StampNs kSubmapAge = from_ms(10'000);  // since a surface was seen; odometry drifts by millimetres
-constexpr std::size_t kSubmapPoints = 2000;      // about 3 kB
+constexpr std::size_t kSubmapPoints = 2000;      // about 3 kB at 0.05 m
 constexpr std::size_t kFewestSubmapPoints = 60;  // fewer tell nothing
 constexpr double kOdomSdM = 0.01, kOdomSdRad = 0.005, kOdomSdShare = 0.01;  // floor, and share of path and turn
+
+/// Finer voxels of the same surfaces are more: with fewer points they would hang in the air.
+std::size_t points_at(double voxel_size_m, std::size_t at_5_cm) {
+  const double finer = std::max(1.0, 0.05 / voxel_size_m);
+  return std::min(kMaxCodecPoints, static_cast<std::size_t>(finer * finer * static_cast<double>(at_5_cm)));
+}
 
 }  // namespace
 
@@ -39,7 +46,8 @@ void RequestMaker::add_surroundings(const LocalMap& surroundings, SpotRequest& r
     return extra.size() < kFewestSubmapPoints ? Cloud{} : extra;
   };
   const std::size_t left = options_.request_bytes - request.lpc.bytes.size();
-  auto extra = encode_within(left, kSubmapPoints, 2 * options_.voxel_size_m, thinned);
+  auto extra =
+      encode_within(left, points_at(options_.voxel_size_m, kSubmapPoints), 2 * options_.voxel_size_m, thinned);
   if (extra) request.extra = std::move(*extra);  // otherwise the frame says it all
 }
 
@@ -48,7 +56,8 @@ Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap
   const auto thinned = [&](std::size_t most) {
     return voxel_downsample(cloud_sensor, options_.voxel_size_m, most);
   };
-  auto lpc = encode_within(options_.request_bytes, kLpcPoints, options_.voxel_size_m, thinned);
+  auto lpc = encode_within(options_.request_bytes, points_at(options_.voxel_size_m, kLpcPoints),
+                           options_.voxel_size_m, thinned);
   if (!lpc) return tl::unexpected(lpc.error());
   SpotRequest r;
   r.client_id = options_.client_id;

@@ -70,6 +70,17 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
   return thin;
 }
 
+/// Points with normals. A cloud that was thinned to few bytes is sparser than its voxels, and nearly all of it
+/// would hang in the air: there neighbourhoods widen until it holds together.
+Cloud with_normals_of(const Cloud& seen, double voxel_size_m) {
+  constexpr double kRadius = 2.5, kWiden = 1.5, kWidest = 8;  // in voxels
+  double radius = kRadius;
+  Cloud cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
+  while (3 * cloud.size() < seen.size() && (radius *= kWiden) < kWidest)
+    cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
+  return cloud;
+}
+
 }  // namespace
 
 struct Surfaces::Changes {
@@ -152,7 +163,7 @@ Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOpt
   Cloud seen = voxel_downsample(cloud_sensor, options.voxel_size_m);
   if (camera != nullptr) query.view = SightView::from_cloud(seen, *camera, options.voxel_size_m, 80);
   seen.points.insert(seen.points.end(), extra_sensor.points.begin(), extra_sensor.points.end());
-  query.cloud = with_normals(std::move(seen), Eigen::Vector3f::Zero(), {2.5 * options.voxel_size_m, 5});
+  query.cloud = with_normals_of(seen, options.voxel_size_m);
   query.medium = voxel_downsample(query.cloud, 2 * options.voxel_size_m);
   query.sparse = spread_points(query.cloud, options.sparse_points, options.voxel_size_m, options.seed);
   return query;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "client/src/tests/walk.hpp"
+#include "common/codec/codec.hpp"
 #include "common/geometry/depth.hpp"
 
 namespace liloc {
@@ -81,6 +82,23 @@ TEST_F(Requests, HoldTheNewestOfALongSilence) {
   EXPECT_EQ(request.local_poses.size(), 250U);
   EXPECT_EQ(request.local_poses.back().stamp_ns, stamp_of(399));
   EXPECT_EQ(request.local_poses.front().stamp_ns, stamp_of(150));
+}
+
+TEST_F(Requests, HoldMorePointsWhereVoxelsAreFiner) {
+  Cloud wall;  // 6 m x 4 m, more than 4000 points at any of these voxel sizes
+  for (float x = -3; x < 3; x += 0.01F)
+    for (float y = -2; y < 2; y += 0.01F) wall.points.emplace_back(x, y, 4.0F);
+  const auto points_at = [&](double voxel_size_m) {
+    EngineOptions options = engine_options();
+    options.voxel_size_m = voxel_size_m;
+    options.request_bytes = 60'000;
+    RequestMaker finer{options};
+    finer.travelled(stamp_of(0), step_of(0), true);
+    return decode(finer.make(wall, surroundings, nullptr).value().lpc).value().size();
+  };
+  EXPECT_LE(points_at(0.05), 4000U);
+  EXPECT_GT(points_at(0.03), 2.0 * static_cast<double>(points_at(0.05)));
+  EXPECT_LE(points_at(0.03), 4000 * 25 / 9U);
 }
 
 TEST_F(Requests, AFrameThatCannotBeSentIsStillTravelled) {

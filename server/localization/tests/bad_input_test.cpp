@@ -93,6 +93,24 @@ TEST(BadInput, AMillionPointsAreThinnedAndStillFound) {
   EXPECT_TRUE(near(found.front().T_map_sensor(), T));
 }
 
+class ThinnedToFewBytes : public testing::TestWithParam<unsigned> {};
+
+TEST_P(ThinnedToFewBytes, IsStillFound) {
+  World world(GetParam());
+  for (int k = 0; k < 4; ++k) {
+    world.watch(k);
+    SpotRequest request = world.request(k, world.truth(k));
+    const Cloud thin = voxel_downsample(decode(request.lpc).value(), world.voxel_size_m, 900);
+    ASSERT_GT(thin.size(), 450U);
+    request.lpc = encode(thin).value();
+    const SpotReply reply = world.localizer->locate(request);
+    ASSERT_TRUE(reply.T_map_sensor) << "spot " << k << " " << reply.text;
+    EXPECT_TRUE(near(*reply.T_map_sensor, world.truth(k))) << "spot " << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ThinnedToFewBytes, testing::Range(1U, 6U));
+
 class OneCamera : public testing::TestWithParam<unsigned> {};
 
 TEST_P(OneCamera, IsEnoughToAnswerAndNeverToBeWrong) {

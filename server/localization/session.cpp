@@ -81,9 +81,10 @@ void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* re
   evidence_.own_log_odds = log_odds_alone(found, verify_.tracks);
   evidence_.margin = margin_of(found);
   report(found.front(), evidence_.own_estimate, evidence_.margin, reply);
-  if (options_.verify_or_default() == Verify::tracks && conclusive(evidence_, verify_))
-    return conclude(SpotStatus::verified, Reason::conclusive, reply);
-  conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  if (options_.verify_or_default() != Verify::tracks || !conclusive(evidence_, verify_))
+    return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  reply->T_map_odom = evidence_.own_estimate.T_map_sensor * spot->T_odom_sensor().inverse();
+  conclude(SpotStatus::verified, Reason::conclusive, reply);
 }
 
 /// All that the newest spot and the ones before it say of the best track.

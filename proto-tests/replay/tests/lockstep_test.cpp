@@ -144,6 +144,8 @@ TEST_F(Lockstep, ColdRequestsAreAnsweredToo) {
   ASSERT_TRUE(report) << report.error().error.message;
   EXPECT_GE(report->devices[0].spots.n, 5u);
   EXPECT_EQ(report->devices[0].spots.verified_wrong, 0u);
+  ASSERT_GT(report->devices[0].spots.verified, 0u);
+  EXPECT_GT(report->devices[0].online.coverage, 0.1) << "a verified answer gives poses, also without a history";
 }
 
 }  // namespace

@@ -42,6 +42,9 @@ TEST_P(LocalizerLaw, AColdRequestIsAnsweredOnItsOwn) {
   const SpotReply again = world.localizer->locate(request);
   EXPECT_TRUE(again.T_map_sensor->isApprox(*first.T_map_sensor)) << "nothing is remembered";
   EXPECT_EQ(again.status, first.status);
+  ASSERT_EQ(first.T_map_odom.has_value(), first.verified());
+  if (!first.verified()) return;
+  EXPECT_TRUE((*first.T_map_odom * request.T_odom_sensor).isApprox(*first.T_map_sensor, 1e-9));
 }
 
 TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {

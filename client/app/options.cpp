@@ -111,14 +111,17 @@ void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
                    "Of one core for the registration; frames are left out to keep it")
       ->check(CLI::Range(0.02, 1.0))
       ->capture_default_str();
-  method->add_flag("!--no-submap", c.submap, "Send the frame alone, without what stands around");
+  method->add_flag_callback(
+      "--no-submap", [&c] { c.submap = false; }, "Send the frame alone, without what stands around");
   method
       ->add_option("--request-bytes", c.request_bytes,
                    "Most, of a request's clouds: the surroundings give way first, then the frame is thinned")
       ->check(CLI::Range(2000, 60'000))
       ->capture_default_str();
   method->add_flag("--cold", c.cold, "Each request is answered on its own");
-  method->add_option("--seed", c.seed, "Of all randomness")->capture_default_str();
+  method->add_option("--seed", c.seed, "Of all randomness")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 
   app.add_option("--trace", c.trace_folder, "Write online.tum, trajectory.tum, spots.csv and local.csv here");
   app.add_option("--log-level", given.log_level, "debug, info, warning or error")->capture_default_str();

@@ -60,6 +60,14 @@ struct FreeSpace {
   }
 };
 
+/// `cloud`: thinned, with normals.
+Status has_enough(std::string_view name, const Cloud& cloud, double voxel_size_m) {
+  if (cloud.size() >= kFewestPoints) return {};
+  return fail(
+      "{} has {} usable points at a voxel of {} m, of at least {}; give a denser cloud or a larger voxel", name,
+      cloud.size(), voxel_size_m, kFewestPoints);
+}
+
 struct Ranked {
   Hypothesis hypothesis;
   Fit fit;
@@ -91,13 +99,10 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   for (const auto& [name, cloud] : {std::pair{"source", &source}, {"target", &target}})
     if (const Status near = near_origin(name, *cloud, voxel); !near) return tl::unexpected(near.error());
   const Query query = make_query(source, nullptr, {voxel, 400, options.seed});
-  if (query.cloud.size() < kFewestPoints)
-    return fail("source has {} usable points at a voxel of {} m; at least {} are needed", query.cloud.size(),
-                voxel, kFewestPoints);
+  if (const Status enough = has_enough("source", query.cloud, voxel); !enough)
+    return tl::unexpected(enough.error());
   Cloud thin = with_normals(voxel_downsample(target, voxel), Eigen::Vector3f::Zero(), {2.5 * voxel, 5});
-  if (thin.size() < kFewestPoints)
-    return fail("target has {} usable points at a voxel of {} m; at least {} are needed", thin.size(), voxel,
-                kFewestPoints);
+  if (const Status enough = has_enough("target", thin, voxel); !enough) return tl::unexpected(enough.error());
   const Target room = make_target(std::move(thin), {}, voxel);
   const Described room_described = describe(room->coarse, {10 * voxel, 1.0, options.seed, kMostDescribed});
   const Described query_described = describe(query.medium, {10 * voxel, 1.0, options.seed, kMostDescribed});

@@ -179,7 +179,8 @@ int main(int argc, char** argv) {
   app.add_option("--csv", options.csv, "Write a row per spot");
   app.add_option("--evidence", options.evidence, "Write what each decision rested on, for --sweep");
   app.add_option("--sweep", options.sweep, "Read such a file and print what other thresholds would have done");
-  app.add_flag("!--no-gravity", options.trial.gravity, "Requests do not say where up is");
+  app.add_flag_callback(
+      "--no-gravity", [&] { options.trial.gravity = false; }, "Requests do not say where up is");
   app.add_flag("--verbose", options.verbose, "Print every spot");
   try {
     app.parse(argc, argv);

@@ -45,7 +45,9 @@ int run(const AlignArguments& arguments) {
   if (!target) return complain(target.error(), kBadUsage);
   const Stopwatch watch;
   const auto result = align_clouds(*source, *target, arguments.options);
-  if (!result) return complain(result.error(), kFailed);
+  if (!result)
+    return complain({fmt::format("{} into {}: {}", arguments.source, arguments.target, result.error().message)},
+                    kFailed);
   (arguments.json ? print_json : print_text)(*result, watch.elapsed_ms());
   return kDone;
 }
@@ -61,7 +63,9 @@ void add_align(CLI::App& app, int& exit_code) {
   command->add_option("--voxel", arguments->options.voxel_size_m, "Voxel size in metres")
       ->check(CLI::Range(0.005, 1.0))
       ->capture_default_str();
-  command->add_option("--seed", arguments->options.seed, "Of all randomness")->capture_default_str();
+  command->add_option("--seed", arguments->options.seed, "Of all randomness")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--threads", arguments->options.threads, "Threads to use")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();

@@ -185,7 +185,9 @@ void add_demo(CLI::App& app, int& exit_code) {
   command->add_option("--seconds", arguments->seconds, "Length of the demo")
       ->check(CLI::Range(5.0, 3600.0))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Of the simulated site")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of the simulated site")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--people", arguments->people, "Walking about")
       ->check(CLI::Range(0, 30))
       ->capture_default_str();

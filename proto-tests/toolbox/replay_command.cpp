@@ -30,7 +30,9 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("REC", options->recording, "Folder of the recording")->required();
   command->add_option("--out", options->out, "Folder for the traces and report.json")->required();
   command->add_flag("--lockstep", options->lockstep, "One process, no DDS, deterministic, as fast as it can");
-  command->add_option("--seed", options->seed, "Of all randomness")->capture_default_str();
+  command->add_option("--seed", options->seed, "Of all randomness")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--interval-ms", options->interval_ms, "Longest time between global registrations")
       ->capture_default_str();
   command
@@ -58,8 +60,9 @@ void add_replay(CLI::App& app, int& exit_code) {
           "The devices' clocks run so far ahead: what they sent is played that much earlier (not in lockstep)")
       ->check(CLI::Range(-10'000.0, 10'000.0))
       ->capture_default_str();
-  command->add_flag("!--no-submap", options->submap,
-                    "Requests carry a frame alone, without what was seen before");
+  command->add_flag_callback(
+      "--no-submap", [options] { options->submap = false; },
+      "Requests carry a frame alone, without what was seen before");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

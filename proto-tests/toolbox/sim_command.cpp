@@ -139,7 +139,9 @@ void add_sim(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--describe", arguments->describe,
                       "With --live: folder for site.json and the devices' files");
-  command->add_option("--seed", arguments->options.seed, "Everything follows from it")->capture_default_str();
+  command->add_option("--seed", arguments->options.seed, "Everything follows from it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   CLI::Option* seconds = command
                              ->add_option("--seconds", arguments->options.seconds,
                                           "Length of the run; --live: an hour unless given")

@@ -56,7 +56,9 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   method->add_option("--sampling", options.localizer.sampling, "Share of points with features that RANSAC uses")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  method->add_option("--seed", options.localizer.seed, "Seed of all randomness")->capture_default_str();
+  method->add_option("--seed", options.localizer.seed, "Seed of all randomness")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 
   auto* load = app.add_option_group("load");
   load->add_option("--workers", options.service.workers, "Requests worked on at once")->capture_default_str();

@@ -55,6 +55,7 @@ TEST_F(CommandLine, EverySubcommandHasHelp) {
     const Outcome outcome = liloc(std::string(name) + "--help");
     EXPECT_EQ(outcome.exit_code, 0) << name;
     EXPECT_THAT(outcome.out, HasSubstr("Usage"));
+    EXPECT_THAT(outcome.out, Not(HasSubstr("{false}"))) << "of a flag that negates";
   }
 }
 
@@ -65,6 +66,8 @@ TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
   expect_complaint(liloc("sim"), 2, "OUT");
   expect_complaint(liloc("sim " + path("rec") + " --people many"), 2, "many");
   expect_complaint(liloc("sim " + path("rec") + " --lidars 99"), 2, "lidars");
+  expect_complaint(liloc("sim " + path("rec") + " --seed -1"), 2, "--seed");
+  expect_complaint(liloc("replay " + path("rec") + " --seed -1 --out " + path("out")), 2, "--seed");
   expect_complaint(liloc("align only-one.ply"), 2, "TARGET");
   EXPECT_FALSE(fs::exists(path("rec")));
 }
@@ -129,6 +132,22 @@ TEST_F(CommandLine, CloudsThatCannotBeReadAreRefused) {
   expect_complaint(liloc("align " + path("flat.ply") + " " + path("flat.ply")), 2, "no z");
   ASSERT_TRUE(write_file(folder_.path() / "garbage.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nDATA ascii\n1 2\n"));
   expect_complaint(liloc("align " + path("garbage.pcd") + " " + path("garbage.pcd")), 2, "garbage.pcd");
+}
+
+TEST_F(CommandLine, CloudsThatAreTooThinAreNamedWithTheRemedy) {
+  std::string room = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1000\nHEIGHT 1\nPOINTS 1000\nDATA ascii\n";
+  for (int i = 0; i < 1000; ++i)
+    room += fmt::format("{} {} {}\n", 0.1 * (i % 10), 0.1 * (i / 10 % 10), 0.1 * (i / 100));
+  ASSERT_TRUE(write_file(folder_.path() / "coarse.pcd", room));
+  ASSERT_TRUE(write_file(folder_.path() / "one.pcd",
+                         "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\n"
+                         "POINTS 1\nDATA ascii\n1 2 3\n"));
+  const std::string coarse = path("coarse.pcd"), one = path("one.pcd");
+  expect_complaint(liloc("align " + one + " " + coarse + " --voxel 0.2"), 1,
+                   one + " into " + coarse + ": source has 0 usable points");
+  expect_complaint(liloc("align " + coarse + " " + one + " --voxel 0.2"), 1,
+                   coarse + " into " + one + ": target has 0 usable points");
+  expect_complaint(liloc("align " + one + " " + one), 1, "a larger voxel");
 }
 
 TEST_F(CommandLine, PcdFilesThatLieAreRefusedBeforeRoomIsMadeForThem) {

@@ -174,7 +174,7 @@ void FieldLayers::count(const SightView& view, const SightView* before) {
   }
   for (int z = 0; z < size_.z(); ++z) {
     std::ranges::fill(layer.z, centre(2, z));
-    view.count_through(layer, cells, tolerance, before, through_.data() + index(0, 0, z));
+    view.count_through(layer.run(0, cells), tolerance, before, through_.data() + index(0, 0, z));
   }
 }
 

@@ -1,40 +1,44 @@
 #include "common/registration/judge.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace liloc {
 namespace {
 
-/// The word of all ceiling views on one device point: one that measured a surface there outweighs one that,
-/// past an edge, looked by. Beside somebody who moves, looking by says nothing.
-Sight word_of(const Target& target, const Eigen::Vector3f& p_map, float tolerance) {
-  Sight word = Sight::unseen;
-  for (const SightView& view : target.views) {
-    const Sight sight = view.look(p_map, tolerance);
-    if (sight == Sight::agrees) return sight;
-    if (sight == Sight::conflict) word = sight;
-  }
-  const bool excused = word == Sight::conflict && target.movers() != nullptr && target.movers()->at(p_map);
-  return excused ? Sight::unseen : word;
-}
+constexpr std::size_t kAtOnce = 512;  // points that are looked at together
 
 struct Counts {
   int agree = 0, conflict = 0;
 };
 
+Counts near_bare_target(const Target& target, const Cloud& points, const Eigen::Isometry3f& T) {
+  Counts counts;
+  for (const Eigen::Vector3f& point : points.points)
+    counts.agree += target->nearest.nearest(T * point) != NearestGrid::kNone;
+  return counts;
+}
+
+/// The word of all ceiling views on the device's points. Beside somebody who moves, looking by says nothing.
 Counts device_against_ceiling(const Target& target, const Cloud& points, const Eigen::Isometry3f& T,
                               float tolerance) {
   Counts counts;
-  for (const Eigen::Vector3f& point : points.points) {
-    const Eigen::Vector3f p = T * point;
-    if (target.views.empty()) {
-      const std::int32_t j = target->nearest.nearest(p);
-      counts.agree += j != NearestGrid::kNone;
-      continue;
+  std::array<float, kAtOnce> x, y, z;
+  std::array<std::int32_t, kAtOnce> words;
+  for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
+    const std::size_t here = std::min(kAtOnce, points.size() - begin);
+    for (std::size_t i = 0; i < here; ++i) {
+      const Eigen::Vector3f p = T * points.points[begin + i];
+      x[i] = p.x(), y[i] = p.y(), z[i] = p.z();
     }
-    const Sight sight = word_of(target, p, tolerance);
-    counts.agree += sight == Sight::agrees;
-    counts.conflict += sight == Sight::conflict;
+    std::fill_n(words.begin(), here, kNoWord);
+    for (const SightView& view : target.views)
+      view.look_at_all({x.data(), y.data(), z.data(), here}, tolerance, words.data());
+    for (std::size_t i = 0; i < here; ++i) {
+      counts.agree += words[i] == kMeasured;
+      counts.conflict += words[i] == kLookedThrough &&
+                         (target.movers() == nullptr || !target.movers()->at({x[i], y[i], z[i]}));
+    }
   }
   return counts;
 }
@@ -47,7 +51,9 @@ Judgement judge(const Target& target, const Query& query, const Cloud& device_po
   if (device_points.empty()) return result;
   const auto tolerance = static_cast<float>(tolerance_m);
   const double count = static_cast<double>(device_points.size());
-  const Counts device = device_against_ceiling(target, device_points, T_map_sensor.cast<float>(), tolerance);
+  const Eigen::Isometry3f T = T_map_sensor.cast<float>();
+  const Counts device = target.views.empty() ? near_bare_target(target, device_points, T)
+                                             : device_against_ceiling(target, device_points, T, tolerance);
   result.agree = device.agree / count;
   result.conflict = device.conflict / count;
   result.score = result.agree - conflict_weight * result.conflict;

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "common/registration/sight.hpp"
@@ -8,7 +9,8 @@ namespace liloc {
 
 enum class MapShare { all, half };
 
-/// The target's thinned points in the order in which the judge asks for them: every other one first.
+/// The target's thinned points for the judge: every other one apart from the rest, and what lies together in
+/// runs, so that those out of a device's view are passed over run by run.
 class MapPoints {
  public:
   /// Of `stale` points only agreement counts: they may be hidden, or not there any more.
@@ -19,8 +21,18 @@ class MapPoints {
                                          float tolerance_m, MapShare share) const;
 
  private:
-  Vectors sound_, stale_;
-  std::size_t sound_count_, stale_count_;
+  /// Points in runs of kRun, each in a ball.
+  struct Runs {
+    explicit Runs(std::vector<Eigen::Vector3f> points);
+    std::size_t count;
+    Vectors points, centres;
+    std::vector<float> radii;
+  };
+  static std::array<Runs, 2> every_other(const std::vector<Eigen::Vector3f>& points);
+  static SightView::Tally tally(const Runs& runs, const SightView& view, const Eigen::Isometry3f& T_sensor_map,
+                                float tolerance_m);
+
+  std::array<Runs, 2> sound_, stale_;
 };
 
 }  // namespace liloc

@@ -8,32 +8,9 @@
 
 namespace liloc {
 
-/// A pinhole camera and where it stands, for a kernel. `R` by columns.
-struct Pinhole {
-  float R[9], t[3], fx, fy, cx, cy, width, height, nearest;
-};
-
 namespace {
 
-constexpr std::size_t kAtOnce = 512;  // points whose pixels are found before any is looked up
-
-/// The pixel of each point, or -1 outside of the view, and how far it is.
-LILOC_WIDE void project(const Pinhole& c, const float* x, const float* y, const float* z, std::size_t count,
-                        std::int32_t* pixels, float* depths) {
-  const auto row = static_cast<std::int32_t>(c.width);
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i) {
-    const float px = c.R[0] * x[i] + c.R[3] * y[i] + c.R[6] * z[i] + c.t[0],
-                py = c.R[1] * x[i] + c.R[4] * y[i] + c.R[7] * z[i] + c.t[1],
-                pz = c.R[2] * x[i] + c.R[5] * y[i] + c.R[8] * z[i] + c.t[2];
-    const float inverse = 1.0F / std::max(pz, c.nearest);
-    const float u = px * inverse * c.fx + c.cx, v = py * inverse * c.fy + c.cy;
-    const bool inside = (pz >= c.nearest) & (u >= 0) & (v >= 0) & (u < c.width) & (v < c.height);
-    const std::int32_t pixel = static_cast<std::int32_t>(v) * row + static_cast<std::int32_t>(u);
-    pixels[i] = inside ? pixel : -1;
-    depths[i] = pz;
-  }
-}
+constexpr std::size_t kAtOnce = 512;  // points whose words are kept before they are counted
 
 constexpr std::uint16_t kNoDepth = 65535;
 
@@ -60,7 +37,7 @@ void SightView::prepare(const Camera& small) {
   fy_ = static_cast<float>(small.fy);
   cx_ = static_cast<float>(small.cx + 0.5);  // so that truncation picks the nearest pixel
   cy_ = static_cast<float>(small.cy + 0.5);
-  bands_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), Band{});
+  bands_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1, Band{});
 }
 
 SightView SightView::from_depth(const DepthImage& image, const Camera& camera, const Pose& T_sensor_world,
@@ -90,6 +67,7 @@ SightView SightView::from_depth(const DepthImage& image, const Camera& camera, c
     }
   }
   view.widen();
+  for (const Band& band : view.bands_) view.farthest_ = std::max(view.farthest_, band.far);
   return view;
 }
 
@@ -114,11 +92,13 @@ SightView SightView::from_cloud(const Cloud& cloud_sensor, const Camera& camera,
         band.far = std::max(band.far, p.z());
       }
   }
+  for (const Band& band : view.bands_) view.farthest_ = std::max(view.farthest_, band.far);
   return view;
 }
 
 Pinhole SightView::pinhole(const Eigen::Isometry3f& T_sensor_points) const {
-  Pinhole camera{{}, {}, fx_, fy_, cx_, cy_, width_f_, height_f_, kNearest};
+  Pinhole camera{{}, {}, fx_, fy_, cx_, cy_, width_f_, height_f_, kNearest, 0};
+  camera.none = static_cast<std::int32_t>(bands_.size()) - 1;
   Eigen::Map<Eigen::Matrix3f>(camera.R) = T_sensor_points.linear();
   Eigen::Map<Eigen::Vector3f>(camera.t) = T_sensor_points.translation();
   return camera;
@@ -126,44 +106,68 @@ Pinhole SightView::pinhole(const Eigen::Isometry3f& T_sensor_points) const {
 
 namespace {
 
-/// Calls visit(index of the point, its pixel, its depth) for each of the points that are in view.
+/// Calls visit(first point, how many, their words) for a run of points after another.
 template <class Visit>
-void for_each_in_view(const Pinhole& camera, const Vectors& points, std::size_t count, const Visit& visit) {
-  std::array<std::int32_t, kAtOnce> pixels{};
-  std::array<float, kAtOnce> depths{};
-  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
-    const std::size_t here = std::min(kAtOnce, count - begin);
-    project(camera, points.x.data() + begin, points.y.data() + begin, points.z.data() + begin, here,
-            pixels.data(), depths.data());
-    for (std::size_t i = 0; i < here; ++i)
-      if (pixels[i] >= 0) visit(begin + i, static_cast<std::size_t>(pixels[i]), depths[i]);
+void for_each_run(const Pinhole& camera, const DepthBand* bands, const PointRun& points, float tolerance_m,
+                  const Visit& visit) {
+  std::array<std::int32_t, kAtOnce> words;
+  for (std::size_t begin = 0; begin < points.count; begin += kAtOnce) {
+    const std::size_t here = std::min(kAtOnce, points.count - begin);
+    std::fill_n(words.begin(), here, kNoWord);
+    look_at(camera, bands, {points.x + begin, points.y + begin, points.z + begin, here}, tolerance_m,
+            words.data());
+    visit(begin, here, words.data());
   }
 }
 
 }  // namespace
 
-SightView::Tally SightView::tally(const Vectors& points, std::size_t count,
-                                  const Eigen::Isometry3f& T_sensor_points, float tolerance_m) const {
+SightView::Tally SightView::tally(const PointRun& points, const Eigen::Isometry3f& T_sensor_points,
+                                  float tolerance_m) const {
   Tally tally;
-  for_each_in_view(pinhole(T_sensor_points), points, count, [&](std::size_t, std::size_t pixel, float depth) {
-    const Sight sight = compare(bands_[pixel], depth, tolerance_m);
-    tally.agree += sight == Sight::agrees;
-    tally.conflict += sight == Sight::conflict;
-  });
+  for_each_run(pinhole(T_sensor_points), bands_.data(), points, tolerance_m,
+               [&](std::size_t, std::size_t count, const std::int32_t* words) {
+                 for (std::size_t i = 0; i < count; ++i) {
+                   tally.agree += words[i] == kMeasured;
+                   tally.conflict += words[i] == kLookedThrough;
+                 }
+               });
   return tally;
 }
 
-void SightView::count_through(const Vectors& points_world, std::size_t count, float tolerance_m,
-                              const SightView* before, std::uint8_t* counts) const {
-  const auto through = [&](const SightView& view, std::size_t pixel, float depth) {
-    return compare(view.bands_[pixel], depth, tolerance_m) == Sight::conflict ? 1 : 0;
+void SightView::look_at_all(const PointRun& points_world, float tolerance_m, std::int32_t* words) const {
+  look_at(pinhole(T_sensor_world_), bands_.data(), points_world, tolerance_m, words);
+}
+
+void SightView::count_through(const PointRun& points_world, float tolerance_m, const SightView* before,
+                              std::uint8_t* counts) const {
+  const auto add = [&](const SightView& view, int sign) {
+    for_each_run(view.pinhole(T_sensor_world_), view.bands_.data(), points_world, tolerance_m,
+                 [&](std::size_t begin, std::size_t count, const std::int32_t* words) {
+                   for (std::size_t i = 0; i < count; ++i)
+                     counts[begin + i] =
+                         static_cast<std::uint8_t>(counts[begin + i] + sign * (words[i] == kLookedThrough));
+                 });
   };
-  for_each_in_view(pinhole(T_sensor_world_), points_world, count,
-                   [&](std::size_t i, std::size_t pixel, float depth) {
-                     const int more = through(*this, pixel, depth),
-                               less = before != nullptr ? through(*before, pixel, depth) : 0;
-                     counts[i] = static_cast<std::uint8_t>(counts[i] + more - less);
-                   });
+  add(*this, 1);
+  if (before != nullptr) add(*before, -1);
+}
+
+std::array<HalfSpace, 6> SightView::bounds(const Eigen::Isometry3f& T_sensor_points, float tolerance_m) const {
+  // Past the farthest surface, and what a point may lie behind it (see `compare`), nothing is seen.
+  const float end = (farthest_ + tolerance_m) / 0.99F;
+  const std::array<Eigen::Vector4f, 6> sides{
+      Eigen::Vector4f(0, 0, 1, -kNearest), Eigen::Vector4f(0, 0, -1, end),
+      Eigen::Vector4f(fx_, 0, cx_, 0),     Eigen::Vector4f(-fx_, 0, width_f_ - cx_, 0),
+      Eigen::Vector4f(0, fy_, cy_, 0),     Eigen::Vector4f(0, -fy_, height_f_ - cy_, 0)};
+  std::array<HalfSpace, 6> spaces{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Eigen::Vector4f side = sides[i] / sides[i].head<3>().norm();
+    const Eigen::Vector3f normal = T_sensor_points.linear().transpose() * side.head<3>();
+    spaces[i] = {normal.x(), normal.y(), normal.z(),
+                 side.head<3>().dot(T_sensor_points.translation()) + side.w()};
+  }
+  return spaces;
 }
 
 bool SightView::same_sensor(const SightView& other) const {

@@ -1,10 +1,12 @@
 #pragma once
 // Free space seen along lines of sight: a depth sensor looks through empty space up to what it measures.
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "common/geometry/camera.hpp"
 #include "common/geometry/cloud.hpp"
+#include "common/registration/sight_kernel.hpp"
 #include "common/registration/vectors.hpp"
 
 namespace liloc {
@@ -16,8 +18,6 @@ enum class Sight : std::uint8_t {
   conflict,  ///< the sensor looked through the point: something there would have been seen
   behind     ///< hidden behind a measured surface
 };
-
-struct Pinhole;
 
 /// A depth sensor's measurement, thinned to bands: for each pixel of a small image the nearest and the farthest
 /// depth measured in and around it. The bands keep a point beside an edge from counting as a conflict.
@@ -56,14 +56,20 @@ class SightView {
   struct Tally {
     int agree = 0, conflict = 0;
   };
-  /// What `look_sensor` says of the first `count` points, counted; T_sensor_points places them before the
-  /// sensor.
-  [[nodiscard]] Tally tally(const Vectors& points, std::size_t count, const Eigen::Isometry3f& T_sensor_points,
+  /// What `look_sensor` says of the points, counted; T_sensor_points places them before the sensor.
+  [[nodiscard]] Tally tally(const PointRun& points, const Eigen::Isometry3f& T_sensor_points,
                             float tolerance_m) const;
 
-  /// Counts, for each of the first `count` points (world frame), whether they lie in space that was looked
-  /// through; less those for which that was so `before`, in a view of the same sensor, if any.
-  void count_through(const Vectors& points_world, std::size_t count, float tolerance_m, const SightView* before,
+  /// Raises each point's `Word` to what `look` says of it; `points` in the world frame of the view.
+  void look_at_all(const PointRun& points_world, float tolerance_m, std::int32_t* words) const;
+
+  /// Six half spaces of the points' frame: no ball that misses one of them holds a point that `tally` counts.
+  [[nodiscard]] std::array<HalfSpace, 6> bounds(const Eigen::Isometry3f& T_sensor_points,
+                                                float tolerance_m) const;
+
+  /// Counts, for each of the points (world frame), whether it lies in space that was looked through; less those
+  /// for which that was so `before`, in a view of the same sensor, if any.
+  void count_through(const PointRun& points_world, float tolerance_m, const SightView* before,
                      std::uint8_t* counts) const;
 
   /// Whether both are of one sensor at one place, and whether it also measured the same.
@@ -76,10 +82,7 @@ class SightView {
 
  private:
   static constexpr float kNearest = 0.2F;
-  struct Band {
-    float near = 0, far = 0;  ///< metres; far 0: nothing measured
-    bool operator==(const Band&) const = default;
-  };
+  using Band = DepthBand;
   [[nodiscard]] static Sight compare(const Band& band, float z, float tolerance_m) {
     if (band.far == 0) return Sight::unseen;
     const float slack = tolerance_m + 0.01F * z;
@@ -94,7 +97,8 @@ class SightView {
   Eigen::Isometry3f T_sensor_world_ = Eigen::Isometry3f::Identity();
   int width_ = 0, height_ = 0;
   float width_f_ = 0, height_f_ = 0, fx_ = 1, fy_ = 1, cx_ = 0, cy_ = 0;  ///< centre shifted by half a pixel
-  std::vector<Band> bands_;
+  float farthest_ = 0;                                                    ///< that was measured
+  std::vector<Band> bands_;  ///< pixel by pixel, and one that measured nothing
 };
 
 }  // namespace liloc

@@ -149,9 +149,9 @@ TEST_P(RoomChangeLaw, CountsOfSpaceThatIsLookedThroughAreWhatEachLookSays) {
   Vectors points(1300);
   for (std::size_t i = 0; i < 1300; ++i) points.set(i, {unit(rng), unit(rng), unit(rng) / 2});
   std::vector<std::uint8_t> counts(1300, 0), first(1300, 0);
-  before.count_through(points, 1300, 0.08F, nullptr, counts.data());
+  before.count_through(points.run(0, 1300), 0.08F, nullptr, counts.data());
   first = counts;
-  now.count_through(points, 1300, 0.08F, &before, counts.data());
+  now.count_through(points.run(0, 1300), 0.08F, &before, counts.data());
   int differ = 0, through = 0;
   for (std::size_t i = 0; i < 1300; ++i) {
     const Eigen::Vector3f p(points.x[i], points.y[i], points.z[i]);

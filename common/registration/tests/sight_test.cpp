@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "common/registration/judge.hpp"
 #include "common/registration/tests/watched_room.hpp"
 
@@ -45,7 +47,8 @@ TEST(Sight, ManyPointsAreCountedAsEachIsSeen) {
       agree += sight == Sight::agrees;
       conflict += sight == Sight::conflict;
     }
-    const SightView::Tally tally = w.query.view.tally(Vectors(w.target->coarse.points), count, T, 0.05F);
+    const Vectors points(w.target->coarse.points);
+    const SightView::Tally tally = w.query.view.tally(points.run(0, count), T, 0.05F);
     ASSERT_GT(agree, 100);
     EXPECT_LE(std::abs(tally.agree - agree), 2) << "of those on the edge of a pixel";
     EXPECT_LE(std::abs(tally.conflict - conflict), 2);
@@ -62,6 +65,50 @@ TEST(Sight, AViewRebuiltFromTheCloudAgreesWithItsOwnPoints) {
   }
   EXPECT_GT(agree, w.query.cloud.size() * 9 / 10);
   EXPECT_LT(conflict, w.query.cloud.size() / 50);
+}
+
+TEST(Sight, RunsThatArePassedOverHoldNothingInView) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const WatchedRoom w = watched_room(seed);
+    const std::vector<Eigen::Vector3f>& all = w.target->coarse.points;
+    std::vector<Eigen::Vector3f> sound, stale, every_other;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      (i % 7 == 0 ? stale : sound).push_back(all[i]);
+      if (i % 2 == 0) every_other.push_back(all[i]);
+    }
+    const auto count = [&](const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3f& T) {
+      return w.query.view.tally(Vectors(points).run(0, points.size()), T, 0.05F);
+    };
+    std::mt19937_64 rng(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    int agree = 0;
+    for (int trial = 0; trial < 50; ++trial) {
+      Pose T_map_device = w.T_map_device;
+      T_map_device.linear() =
+          so3_exp(3 * Eigen::Vector3d(unit(rng), unit(rng), unit(rng))) * T_map_device.linear();
+      T_map_device.translation() += 2 * Eigen::Vector3d(unit(rng), unit(rng), unit(rng));
+      const Eigen::Isometry3f T = T_map_device.inverse().cast<float>();
+      const SightView::Tally in_doubt = MapPoints(sound, stale).seen_by(w.query.view, T, 0.05F, MapShare::all),
+                             half = MapPoints(all).seen_by(w.query.view, T, 0.05F, MapShare::half);
+      EXPECT_EQ(in_doubt.agree, count(all, T).agree);
+      EXPECT_EQ(in_doubt.conflict, count(sound, T).conflict);
+      EXPECT_EQ(half.agree, count(every_other, T).agree);
+      EXPECT_EQ(half.conflict, count(every_other, T).conflict);
+      agree += half.agree;
+    }
+    EXPECT_GT(agree, 100);
+  }
+}
+
+TEST(Sight, OfManySensorsOneThatMeasuredOutweighsOneThatLookedBy) {
+  const SightView view = half_covered();
+  const Vectors points({{0.5F, 0, 3.0F}, {0.5F, 0, 2.0F}, {-0.5F, 0, 2.0F}, {10, 0, 1.0F}});
+  std::vector<std::int32_t> words{kNoWord, kNoWord, kNoWord, kLookedThrough};
+  view.look_at_all(points.run(0, 4), 0.05F, words.data());
+  EXPECT_EQ(words, (std::vector<std::int32_t>{kMeasured, kLookedThrough, kNoWord, kLookedThrough}));
+  words.assign(4, kMeasured);
+  view.look_at_all(points.run(0, 4), 0.05F, words.data());
+  EXPECT_EQ(words, std::vector<std::int32_t>(4, kMeasured));
 }
 
 class JudgeLaw : public testing::TestWithParam<unsigned> {};

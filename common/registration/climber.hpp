@@ -18,7 +18,7 @@ struct LevelPose {
 class Climber {
  public:
   /// Points about the device and their normals, turned into the map's axes at yaw 0.
-  Climber(const ScoreField& field, const Movers* movers, const Eigen::Vector3d& up_map, const Cloud& level)
+  Climber(const ScoreField& field, const Vicinity* movers, const Eigen::Vector3d& up_map, const Cloud& level)
       : field_(field), movers_(movers), up_map_(up_map), level_(level), worths_(level.size()) {}
 
   struct Steps {
@@ -34,7 +34,7 @@ class Climber {
   bool improve(double shift_m, double turn_rad, std::size_t points, LevelPose* best);
 
   const ScoreField& field_;
-  const Movers* const movers_;
+  const Vicinity* const movers_;
   const Eigen::Vector3d up_map_;
   const Cloud& level_;
   std::unordered_map<long, ScoreField::Probes> turned_;  ///< by yaw in microradians

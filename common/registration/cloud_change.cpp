@@ -1,15 +1,12 @@
 #include "common/registration/cloud_change.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace liloc {
 namespace {
 
 constexpr std::int32_t kFree = -1;
-constexpr double kCell_m = 0.1, kMostCells = 4e6;
 
 std::uint64_t hash_of(const Eigen::Vector3f& p) {
   std::uint64_t hash = 0;
@@ -98,27 +95,6 @@ CloudChange change_between(const Cloud& before, const Cloud& now) {
     if (change.now[i] == CloudChange::kGone && before.points[i].allFinite())
       change.gone.push_back(before.points[i]);
   return change;
-}
-
-Vicinity::Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : points) box.extend(p);
-  if (box.isEmpty()) return;
-  const auto reach = static_cast<float>(reach_m) + 1e-3F;  // whatever rounding does
-  origin_ = box.min().array() - reach;
-  const Eigen::Vector3f size_m = box.sizes().array() + 2 * reach;
-  const double cells = size_m.cast<double>().prod() / std::pow(kCell_m, 3);
-  inverse_ = static_cast<float>(1.0 / (kCell_m * std::cbrt(std::max(1.0, cells / kMostCells))));
-  size_ = (size_m * inverse_).array().ceil().cast<int>() + 1;
-  cells_.assign(index(0, 0, size_.z()), 0);
-  for (const Eigen::Vector3f& p : points) {
-    const Eigen::Array3i lo = (((p - origin_).array() - reach) * inverse_).cast<int>().max(0);
-    const Eigen::Array3i hi = (((p - origin_).array() + reach) * inverse_).cast<int>().min(size_ - 1);
-    for (int z = lo.z(); z <= hi.z(); ++z)
-      for (int y = lo.y(); y <= hi.y(); ++y)
-        std::fill_n(cells_.begin() + static_cast<std::ptrdiff_t>(index(lo.x(), y, z)), hi.x() - lo.x() + 1,
-                    std::uint8_t{1});
-  }
 }
 
 }  // namespace liloc

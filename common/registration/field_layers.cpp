@@ -5,14 +5,15 @@
 #include <array>
 #include <cmath>
 
+#include "common/registration/vicinity.hpp"
+
 namespace liloc {
 namespace {
 
-constexpr double kMostCells = 8e6;    // of a plane
-constexpr double kSnap_m = 0.2;       // so that a point at the rim that moves a little moves no cell
-constexpr float kSameWay = 0.5F;      // cosine up to which a surface enters the plane of a direction
-constexpr double kReach = 2.2;        // standard deviations
-constexpr std::size_t kMostGone = 4;  // if more than 1 in so many points is gone, all is made anew
+constexpr double kMostCells = 8e6;  // of a plane
+constexpr double kSnap_m = 0.2;     // so that a point at the rim that moves a little moves no cell
+constexpr float kSameWay = 0.5F;    // cosine up to which a surface enters the plane of a direction
+constexpr double kReach = 2.2;      // standard deviations
 
 /// The direction that a plane stands for.
 Eigen::Vector3f direction_of(int plane) {
@@ -106,7 +107,7 @@ FieldLayers::FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& v
   const FieldLayers& before = earlier.layers;
   const bool same_cells =
       size_ == before.size_ && origin_ == before.origin_ && cell_ == before.cell_ && !size_.isZero();
-  if (!same_cells || earlier.change.gone.size() > cloud_map.size() / kMostGone) {
+  if (!same_cells || !earlier.change.little(cloud_map.size())) {
     *this = FieldLayers(cloud_map, views, options);
     return;
   }
@@ -114,9 +115,9 @@ FieldLayers::FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& v
   Stamp stamp(options.surface_sd_m);
   for (const Eigen::Vector3f& p : earlier.change.gone) forget(p, &stamp);
   for (const std::uint32_t i : earlier.change.fresh) add(cloud_map, i, &stamp);
-  const Vicinity touched(earlier.change.gone, 2 * static_cast<double>(stamp.reach_m));
+  const Vicinity touched = Vicinity::covering(earlier.change.gone, 2 * static_cast<double>(stamp.reach_m));
   for (std::size_t i = 0; i < cloud_map.size(); ++i)  // once more where something else was taken away
-    if (touched.has(cloud_map.points[i])) add(cloud_map, i, &stamp);
+    if (touched.at(cloud_map.points[i])) add(cloud_map, i, &stamp);
   const bool same_sensors =
       std::ranges::equal(views, earlier.views, [](const auto& a, const auto& b) { return a.same_sensor(b); });
   if (same_sensors)

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/registration/vicinity.hpp"
+
 namespace liloc {
 namespace {
 
 constexpr double kMostBlocks = 1 << 24;  // 67 MB of block table: a larger extent gets larger cells
 constexpr float kSnapCells = 8;          // so that a point at the rim that moves a little moves no cell
-constexpr std::size_t kMostGone = 4;     // if more than 1 in so many points is gone, all is made anew
 /// While a grid is taken over: a cell whose point is gone; below, who has it for now.
 constexpr std::int32_t kLeft = NearestGrid::kNone - 1;
 
@@ -25,14 +26,14 @@ NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell
   lay_out(points, cell_m, reach_m);
   const bool same_cells = !blocks_.empty() && origin_ == before.origin_ && extent_ == before.extent_ &&
                           cell_ == before.cell_ && reach_ == before.reach_;
-  if (!same_cells || change.gone.size() > points.size() / kMostGone) {
+  if (!same_cells || !change.little(points.size())) {
     for (std::size_t i = 0; i < points.size(); ++i) stamp(points, i);
     return;
   }
   take_over(before, change.now);
-  const Vicinity touched(change.gone, 2 * static_cast<double>(reach_));
+  const Vicinity touched = Vicinity::covering(change.gone, 2 * static_cast<double>(reach_));
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (touched.has(points[i])) fill_left(points, i);
+    if (touched.at(points[i])) fill_left(points, i);
   for (Block& block : cells_)
     for (std::int32_t& held : block)
       if (held <= kLeft) held = held == kLeft ? kNone : kLeft - 1 - held;

@@ -9,7 +9,7 @@ struct Side {
   const Cloud& target;
   const NearestGrid& nearest;
   const Cloud& source;
-  const Movers* movers = nullptr;  ///< beside whom nothing is paired: they are no part of the target
+  const Vicinity* movers = nullptr;  ///< beside whom nothing is paired: they are no part of the target
 
   /// The index of a source point's partner, or NearestGrid::kNone.
   [[nodiscard]] std::int32_t partner_of(const Eigen::Vector3f& p_target) const {

@@ -30,7 +30,7 @@ bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
 
 /// Surfaces near `around`, and those that are gone.
 std::vector<std::uint8_t> stale_points(const Cloud& cloud_map, const std::vector<SightView>& views,
-                                       const Movers& around) {
+                                       const Vicinity& around) {
   std::vector<std::uint8_t> stale(cloud_map.size(), 0);
   for (std::size_t i = 0; i < cloud_map.size(); ++i)
     stale[i] = around.at(cloud_map.points[i]) || gone(views, cloud_map.points[i]) ? 1 : 0;
@@ -138,8 +138,8 @@ const ScoreField& Surfaces::field_fine() const {
 
 Present::Present(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
                  const Cloud& moving_map)
-    : movers(moving_map, kBeside_m),
-      stale(stale_points(surfaces->coarse, views, Movers(moving_map, kAround_m))),
+    : movers(moving_map.points, kBeside_m),
+      stale(stale_points(surfaces->coarse, views, Vicinity(moving_map.points, kAround_m))),
       map_points(map_points_of(surfaces->coarse, stale)),
       surfaces_(std::move(surfaces)) {}
 

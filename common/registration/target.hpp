@@ -9,10 +9,10 @@
 
 #include "common/geometry/cloud.hpp"
 #include "common/registration/map_points.hpp"
-#include "common/registration/movers.hpp"
 #include "common/registration/nearest_grid.hpp"
 #include "common/registration/score_field.hpp"
 #include "common/registration/sight.hpp"
+#include "common/registration/vicinity.hpp"
 
 namespace liloc {
 
@@ -58,7 +58,7 @@ class Present {
   Present(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
           const Cloud& moving_map);
 
-  const Movers movers;                    ///< around whom lines of sight past them say nothing
+  const Vicinity movers;                  ///< around whom lines of sight past them say nothing
   const std::vector<std::uint8_t> stale;  ///< of each point of Surfaces::coarse: hidden, or not there any more
   const MapPoints map_points;             ///< the same points for the judge
 
@@ -79,7 +79,7 @@ struct Target {
 
   [[nodiscard]] const Surfaces* operator->() const { return surfaces.get(); }
   /// Null: nothing moves.
-  [[nodiscard]] const Movers* movers() const {
+  [[nodiscard]] const Vicinity* movers() const {
     return present && !present->movers.empty() ? &present->movers : nullptr;
   }
   [[nodiscard]] const ScoreField& field_coarse() const {

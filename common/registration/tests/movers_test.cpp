@@ -1,9 +1,5 @@
-#include "common/registration/movers.hpp"
-
+// Whom the ceiling sees move, and what has just left.
 #include <gtest/gtest.h>
-
-#include <limits>
-#include <random>
 
 #include "common/registration/tests/watched_room.hpp"
 
@@ -11,28 +7,6 @@ namespace liloc {
 namespace {
 
 class MoversLaw : public testing::TestWithParam<unsigned> {};
-
-TEST_P(MoversLaw, ReachIsADistance) {
-  std::mt19937_64 rng(GetParam());
-  std::uniform_real_distribution<float> unit(0, 1);
-  const auto anywhere = [&] { return Eigen::Vector3f(8 * unit(rng) - 1, 6 * unit(rng), 2.5F * unit(rng)); };
-  Cloud moving;
-  for (int i = 0; i < 30; ++i) moving.points.push_back(anywhere());
-  moving.points.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
-  const Movers movers(moving, 0.3);
-  constexpr float kBlur_m = 0.08F;  // a cell's half diagonal, and a little
-  int inside = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const Eigen::Vector3f p = anywhere();
-    float nearest = 100;
-    for (const Eigen::Vector3f& m : moving.points)
-      if (m.allFinite()) nearest = std::min(nearest, (p - m).norm());
-    ASSERT_TRUE(movers.at(p) || nearest > 0.3F - kBlur_m) << nearest;
-    ASSERT_TRUE(!movers.at(p) || nearest < 0.3F + kBlur_m) << nearest;
-    inside += movers.at(p);
-  }
-  EXPECT_GT(inside, 20);
-}
 
 /// Somebody as a box, 1.2 m before the device.
 scene::Box person_before(const WatchedRoom& w) {
@@ -91,12 +65,6 @@ TEST_P(MoversLaw, WhatTheCeilingLooksThroughByNowIsStale) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MoversLaw, testing::Range(1U, 7U));
-
-TEST(Movers, NobodyIsNowhere) {
-  EXPECT_TRUE(Movers().empty());
-  EXPECT_TRUE(Movers(Cloud{}, 0.2).empty());
-  EXPECT_FALSE(Movers(Cloud{}, 0.2).at(Eigen::Vector3f::Zero()));
-}
 
 }  // namespace
 }  // namespace liloc

@@ -122,25 +122,6 @@ TEST_P(RoomChangeLaw, ARoomThatDidNotChangeHasNoChange) {
   EXPECT_TRUE(change.gone.empty());
 }
 
-TEST_P(RoomChangeLaw, VicinityMissesNothingInReach) {
-  std::mt19937_64 rng(GetParam());
-  std::uniform_real_distribution<float> unit(0, 5);
-  std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 20; ++i) points.emplace_back(unit(rng), unit(rng), unit(rng));
-  const Vicinity vicinity(points, 0.3);
-  int outside = 0;
-  for (int i = 0; i < 3000; ++i) {
-    const Eigen::Vector3f p(unit(rng), unit(rng), unit(rng));
-    float least = 100;
-    for (const Eigen::Vector3f& q : points) least = std::min(least, (p - q).cwiseAbs().maxCoeff());
-    ASSERT_TRUE(vicinity.has(p) || least > 0.3F);
-    ASSERT_TRUE(!vicinity.has(p) || least < 0.42F);
-    outside += !vicinity.has(p);
-  }
-  EXPECT_GT(outside, 100);
-  EXPECT_FALSE(Vicinity({}, 0.3).has({0, 0, 0}));
-}
-
 TEST_P(RoomChangeLaw, CountsOfSpaceThatIsLookedThroughAreWhatEachLookSays) {
   const WatchedRoom w = watched_room(GetParam());
   const SightView now = watch(w.room, GetParam() + 100).views[0], &before = w.target.views[0];

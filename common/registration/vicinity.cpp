@@ -1,4 +1,4 @@
-#include "common/registration/movers.hpp"
+#include "common/registration/vicinity.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,28 +9,39 @@ namespace liloc {
 namespace {
 
 constexpr double kCell_m = 0.08, kMostCells = 4e6;
+constexpr double kHalfDiagonal = 0.8661;  // of a cell; rounded up
+constexpr float kRounding_m = 1e-3F;
 
 }  // namespace
 
-Movers::Movers(const Cloud& moving_map, double reach_m) {
+Vicinity::Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m)
+    : Vicinity(points, reach_m, Margin::none) {}
+
+Vicinity Vicinity::covering(const std::vector<Eigen::Vector3f>& points, double reach_m) {
+  return {points, reach_m, Margin::cell};
+}
+
+Vicinity::Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m, Margin margin) {
   Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : moving_map.points)
+  for (const Eigen::Vector3f& p : points)
     if (p.allFinite()) box.extend(p);
   if (box.isEmpty()) return;
-  const auto reach = static_cast<float>(reach_m);
+  auto reach = static_cast<float>(reach_m);
+  const double cells = (box.sizes().array() + 2 * reach).cast<double>().prod() / std::pow(kCell_m, 3);
+  const double cell_m = kCell_m * std::cbrt(std::max(1.0, cells / kMostCells));
+  inverse_ = static_cast<float>(1.0 / cell_m);
+  if (margin == Margin::cell) reach += static_cast<float>(kHalfDiagonal * cell_m) + kRounding_m;
   origin_ = box.min().array() - reach;
   const Eigen::Vector3f size_m = box.sizes().array() + 2 * reach;
-  const double cells = size_m.cast<double>().prod() / std::pow(kCell_m, 3);
-  inverse_ = static_cast<float>(1.0 / (kCell_m * std::cbrt(std::max(1.0, cells / kMostCells))));
   size_ = (size_m * inverse_).array().ceil().cast<int>().max(1);
   extent_ = size_.cast<float>();
   cells_.assign(index({0, 0, size_.z()}), 0);
-  for (const Eigen::Vector3f& p : moving_map.points)
+  for (const Eigen::Vector3f& p : points)
     if (p.allFinite()) stamp((p - origin_).array(), reach);
 }
 
 /// A ball, row by row: the cells whose centres lie within reach.
-void Movers::stamp(const Eigen::Array3f& q_m, float reach_m) {
+void Vicinity::stamp(const Eigen::Array3f& q_m, float reach_m) {
   const Eigen::Array3f q = q_m * inverse_ - 0.5F;  // in cells, of centres
   const float reach = reach_m * inverse_;
   const auto rows_of = [&](float middle, float half, int size) {

@@ -1,26 +1,28 @@
 #pragma once
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "common/geometry/cloud.hpp"
-
 namespace liloc {
 
-/// Where something moves right now: all within `reach_m` of what the ceiling sees move. Immutable.
-class Movers {
+/// The places within reach of some points, by cells of 0.08 m, or more where the points span more than a
+/// building. Immutable.
+class Vicinity {
  public:
-  Movers() = default;
-  /// Non-finite points are left out.
-  Movers(const Cloud& moving_map, double reach_m);
+  Vicinity() = default;
+  /// The cells whose middle is in reach. Non-finite points are left out.
+  Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m);
+  /// The same with a margin: misses no place in reach, errs towards yes by up to a cell's diagonal.
+  [[nodiscard]] static Vicinity covering(const std::vector<Eigen::Vector3f>& points, double reach_m);
 
   [[nodiscard]] bool empty() const { return cells_.empty(); }
-  [[nodiscard]] bool at(const Eigen::Vector3f& p_map) const {
-    const Eigen::Vector3f q = (p_map - origin_) * inverse_;
+  [[nodiscard]] bool at(const Eigen::Vector3f& p) const {
+    const Eigen::Vector3f q = (p - origin_) * inverse_;
     return !cells_.empty() && (q.array() >= 0).all() && (q.array() < extent_.array()).all() &&
            cells_[index(q.cast<int>())] != 0;
   }
-  /// Calls visit(p_map) in the middle of each cell, 0.08 m wide or more, within reach.
+  /// Calls visit(point) in the middle of each cell.
   template <class Visit>
   void for_each_place(const Visit& visit) const {
     std::size_t i = 0;
@@ -38,6 +40,8 @@ class Movers {
                static_cast<std::size_t>(size_.x()) +
            static_cast<std::size_t>(cell.x());
   }
+  enum class Margin { none, cell };
+  Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m, Margin margin);
   void stamp(const Eigen::Array3f& q_m, float reach_m);
 
   float inverse_ = 1;

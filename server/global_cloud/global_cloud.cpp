@@ -37,7 +37,7 @@ DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_s
 GlobalCloud::GlobalCloud(Site site, GlobalCloudOptions options)
     : site_(std::move(site)), options_(options), frames_(site_.global_lidars.size()) {
   for (const GlobalLidar& lidar : site_.global_lidars)
-    watches_.push_back({Background(lidar.camera, options_.background), nullptr, 0, 0});
+    watches_.emplace_back(Background(lidar.camera, options_.background));
 }
 
 Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
@@ -48,53 +48,67 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
       image.units.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
     return fail("{}: depth image is {}x{} with {} values, the site says {}x{}", info.id, image.width,
                 image.height, image.units.size(), info.camera.width, info.camera.height);
-  {
-    const std::scoped_lock lock(mutex_);
-    auto& frames = frames_[lidar];
-    if (!frames.empty() && image.stamp_ns <= frames.back()->stamp_ns() &&
-        !clock_set_back(lidar, image.stamp_ns))
-      return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns,
-                  frames.back()->stamp_ns());
-    frames.push_back(watched(lidar, std::move(image)));
-    const StampNs oldest = frames.back()->stamp_ns() - options_.keep_ns;
-    while (frames.size() > options_.max_frames_per_lidar || frames.front()->stamp_ns() < oldest)
-      frames.pop_front();
-  }
+  Watch& watch = watches_[lidar];
+  const std::scoped_lock in_turn(watch.mutex);
+  if (watch.last_ns && image.stamp_ns <= *watch.last_ns && !clock_set_back(lidar, image.stamp_ns))
+    return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns, *watch.last_ns);
+  watch.last_ns = image.stamp_ns;
+  keep(lidar, watched(lidar, std::move(image)));
   return {};
+}
+
+void GlobalCloud::keep(std::size_t lidar, Frame frame) {
+  const std::scoped_lock lock(mutex_);
+  auto& frames = frames_[lidar];
+  const StampNs oldest = frame->stamp_ns() - options_.keep_ns;
+  frames.push_back(std::move(frame));
+  while (frames.size() > options_.max_frames_per_lidar || frames.front()->stamp_ns() < oldest)
+    frames.pop_front();
 }
 
 bool GlobalCloud::clock_set_back(std::size_t lidar, StampNs stamp_ns) {
   Watch& watch = watches_[lidar];
-  const bool late = stamp_ns < frames_[lidar].back()->stamp_ns() - options_.keep_ns;
+  const bool late = stamp_ns < *watch.last_ns - options_.keep_ns;
   watch.late = late ? watch.late + 1 : 0;
   if (watch.late < kLateOnes) return false;
-  watch = {Background(site_.global_lidars[lidar].camera, options_.background), nullptr, epoch_, 0};
+  watch.background = Background(site_.global_lidars[lidar].camera, options_.background);
+  watch.surfaces.reset();
+  const std::scoped_lock lock(mutex_);
   frames_[lidar].clear();
   epoch_since_ns_ = std::min(epoch_since_ns_, stamp_ns);
   return true;
 }
 
+/// Of the room: a new one begins when small changes have gathered for long enough.
+int GlobalCloud::epoch_after(Change change, StampNs stamp_ns) {
+  const std::scoped_lock lock(mutex_);
+  if (change == Change::small && stamp_ns - epoch_since_ns_ > options_.renew_ns) {
+    ++epoch_;
+    epoch_since_ns_ = stamp_ns;
+  }
+  return epoch_;
+}
+
 GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
   const GlobalLidar& info = site_.global_lidars[lidar];
-  auto& [background, surfaces, epoch, late] = watches_[lidar];
-  late = 0;
+  Watch& watch = watches_[lidar];
+  watch.late = 0;
   DepthImage moving;
   if (!options_.drop_moving) {
-    surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);
+    watch.surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);
   } else {
-    Layers layers = background.learn(image);
+    Layers layers = watch.background.learn(image);
     image = std::move(layers.still);
     moving = std::move(layers.moving);
-    if (background.change() == Change::small && image.stamp_ns - epoch_since_ns_ > options_.renew_ns) {
-      ++epoch_;
-      epoch_since_ns_ = image.stamp_ns;
-    }
-    if (!surfaces || background.change() == Change::large || epoch != epoch_) {
-      epoch = epoch_;
-      surfaces = std::make_shared<const LidarSurfaces>(background.surfaces(), info, options_.snapshot);
+    const Change change = watch.background.change();
+    const int epoch = epoch_after(change, image.stamp_ns);
+    if (!watch.surfaces || change == Change::large || watch.epoch != epoch) {
+      watch.epoch = epoch;
+      watch.surfaces =
+          std::make_shared<const LidarSurfaces>(watch.background.surfaces(), info, options_.snapshot);
     }
   }
-  return std::make_shared<const LidarFrame>(std::move(image), std::move(moving), surfaces, info,
+  return std::make_shared<const LidarFrame>(std::move(image), std::move(moving), watch.surfaces, info,
                                             options_.snapshot);
 }
 

@@ -3,7 +3,9 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/camera.hpp"
@@ -49,15 +51,21 @@ class GlobalCloud {
  private:
   using Frame = std::shared_ptr<const LidarFrame>;
 
-  /// What stands still before each LiDAR, and the surfaces derived from it last.
+  /// What stands still before a LiDAR, and the surfaces derived from it last. Its lock keeps the LiDAR's frames
+  /// in turn while they are learned from, which requests need not wait for; taken before `mutex_`.
   struct Watch {
+    explicit Watch(Background empty) : background(std::move(empty)) {}
+    std::mutex mutex;
     Background background;
     std::shared_ptr<const LidarSurfaces> surfaces;
+    std::optional<StampNs> last_ns;
     int epoch = 0;
     int late = 0;  ///< frames in a row that are older than anything kept
   };
-  [[nodiscard]] bool clock_set_back(std::size_t lidar, StampNs stamp_ns);                       ///< mutex_ held
-  [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);                             ///< mutex_ held
+  [[nodiscard]] bool clock_set_back(std::size_t lidar, StampNs stamp_ns);  ///< the watch's lock held
+  [[nodiscard]] Frame watched(std::size_t lidar, DepthImage image);        ///< the watch's lock held
+  [[nodiscard]] int epoch_after(Change change, StampNs stamp_ns);
+  void keep(std::size_t lidar, Frame frame);
   [[nodiscard]] std::shared_ptr<const StitchedRoom> room_of(const std::vector<Frame>& frames);  ///< mutex_ held
   [[nodiscard]] std::shared_ptr<const Snapshot> snapshot_of(std::vector<Frame> frames);         ///< mutex_ held
   [[nodiscard]] bool worth_describing(const std::shared_ptr<const StitchedRoom>& room);         ///< mutex_ held
@@ -65,9 +73,9 @@ class GlobalCloud {
 
   const Site site_;
   const GlobalCloudOptions options_;
-  mutable std::mutex mutex_;
+  std::deque<Watch> watches_;              ///< per LiDAR
+  mutable std::mutex mutex_;               ///< of all below
   std::vector<std::deque<Frame>> frames_;  ///< per LiDAR, by rising stamp
-  std::vector<Watch> watches_;             ///< per LiDAR
   int epoch_ =
       0;  ///< raised when small changes have gathered: all LiDARs then renew together, at one rebuild's cost
   StampNs epoch_since_ns_ = 0;

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <thread>
+
 namespace liloc {
 namespace {
 
@@ -107,6 +109,27 @@ TEST(GlobalCloud, OneBadStampChangesNothing) {
     EXPECT_FALSE(cloud.add_depth(0, wall(from_ms(100 * i)))) << "a driver that now and then forgets the time";
     EXPECT_TRUE(cloud.nearest(kT0 + from_ms(100 * i)));
   }
+}
+
+TEST(GlobalCloud, LidarsLearnSideBySideWhileRequestsAsk) {
+  GlobalCloud in_turn(two_lidars(), {}), at_once(two_lidars(), {});
+  const auto feed = [](GlobalCloud& cloud, std::size_t lidar) {
+    for (int i = 0; i < 40; ++i) EXPECT_TRUE(cloud.add_depth(lidar, wall(kT0 + from_ms(50 * i))));
+  };
+  for (const std::size_t lidar : {0U, 1U}) feed(in_turn, lidar);
+  {
+    const std::jthread a([&] { feed(at_once, 0); }), b([&] { feed(at_once, 1); });
+    const std::jthread asks([&] {
+      for (int i = 0; i < 40; ++i)
+        if (const auto snapshot = at_once.nearest(kT0 + from_ms(50 * i))) (void)(*snapshot)->target();
+    });
+    for (int i = 0; i < 10; ++i) at_once.prepare();
+  }
+  const StampNs last = kT0 + from_ms(50 * 39);
+  const auto expected = in_turn.nearest(last), snapshot = at_once.nearest(last);
+  ASSERT_TRUE(expected && snapshot);
+  EXPECT_EQ((*snapshot)->frames().size(), 2U);
+  EXPECT_EQ((*snapshot)->target()->cloud.points, (*expected)->target()->cloud.points);
 }
 
 TEST(GlobalCloud, KeepsThreeSeconds) {

@@ -16,9 +16,11 @@ Cloud outside_view(const Cloud& map_odom, const Pose& T_odom_sensor, const Senso
                    std::size_t most_points) {
   const Eigen::Isometry3f T_sensor_odom = T_odom_sensor.inverse().cast<float>();
   Cloud outside;
-  for (const auto& p_odom : map_odom.points) {
-    const Eigen::Vector3f p = T_sensor_odom * p_odom;
-    if (p.norm() <= view.max_range_m && !in_view(p, view.camera)) outside.points.push_back(p);
+  for (std::size_t i = 0; i < map_odom.size(); ++i) {
+    const Eigen::Vector3f p = T_sensor_odom * map_odom.points[i];
+    const bool from_behind =
+        map_odom.has_normals() && (T_sensor_odom.linear() * map_odom.normals[i]).dot(p) >= 0;
+    if (p.norm() <= view.max_range_m && !from_behind && !in_view(p, view.camera)) outside.points.push_back(p);
   }
   if (outside.size() <= most_points) return outside;
   Cloud thin;

@@ -34,6 +34,19 @@ TEST(OutsideView, IsInTheSensorsFrame) {
   EXPECT_LT((extra.points[0].cast<double>() - behind).norm(), 1e-5);
 }
 
+TEST(OutsideView, LeavesOutSurfacesWhoseOtherSideIsNearer) {
+  const Eigen::Vector3f left(-1, 0, 0), behind_it(-1.1F, 0, 0);  // two sides of a partition
+  const Cloud map{{left, behind_it}, {Eigen::Vector3f::UnitX(), -Eigen::Vector3f::UnitX()}};
+  const Cloud before = outside_view(map, Pose::Identity(), small_view(), 100);
+  ASSERT_EQ(before.size(), 1U);
+  EXPECT_FLOAT_EQ(before.points[0].x(), left.x());
+  Pose T_beyond = Pose::Identity();
+  T_beyond.translation() = Eigen::Vector3d(-3, 0, 0);
+  const Cloud beyond = outside_view(map, T_beyond, small_view(), 100);
+  ASSERT_EQ(beyond.size(), 1U);
+  EXPECT_FLOAT_EQ(beyond.points[0].x(), behind_it.x() + 3);
+}
+
 TEST(OutsideView, IsThinnedEvenly) {
   Cloud map;
   for (int i = 0; i < 1000; ++i) map.points.emplace_back(0, 0.001F * static_cast<float>(i), -1);

@@ -77,10 +77,10 @@ void sweep_following(const std::vector<EvidenceRow>& rows) {
   for (const double map_agree : {0.90, 0.93, 0.96, 0.98})
     for (const double overlap : {0.93, 0.96, 0.98, 0.99}) {
       VerifyOptions o;
-      o.verified_map_agree = map_agree;
-      o.verified_overlap = overlap;
+      o.followed_map_agree = map_agree;
+      o.followed_overlap = overlap;
       print_line(marked(fmt::format("{:.2f}, {:.2f}", map_agree, overlap),
-                        map_agree == standard.verified_map_agree && overlap == standard.verified_overlap),
+                        map_agree == standard.followed_map_agree && overlap == standard.followed_overlap),
                  rows, [&](const EvidenceRow& r) -> std::optional<Outcome> {
                    if (!r.live || !r.followed() || !r.evidence.best) return std::nullopt;
                    return Outcome{holds(r.evidence, o), r.best_right};

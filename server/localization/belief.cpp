@@ -11,6 +11,10 @@ double square(double x) {
 
 }  // namespace
 
+bool is_somewhere(const Judgement& judgement, const BeliefOptions& options) {
+  return judgement.agree >= options.somewhere;
+}
+
 double evidence_of(const Judgement& judgement, bool fits, const BeliefOptions& options) {
   const double conflict = judgement.conflict + judgement.map_conflict * judgement.map_seen;
   return -options.unseen * std::log(1.0 + options.least_unseen - judgement.agree) -

@@ -14,10 +14,15 @@ struct BeliefOptions {
   double least_unseen = 0.05;  ///< so much is never borne out
   double conflict = 1.05;      ///< weight of the logarithm of how much contradicts, over ...
   double few_conflict = 0.0007;  ///< ... what little contradicts the right place too, over device points
+  double somewhere = 0.05;  ///< least share of the device's cloud that is borne out, to be a place of its own
   double unfit = 5.6;  ///< for a spot that contradicts the place clearly or that refinement leads away from it
   double elsewhere = -8.1;  ///< of the device being where nothing was found: outside the covered area, say
   PlaceGate view{0.5, radians(20.0)};  ///< how far apart spots begin to see different things
 };
+
+/// Whether a place is told from elsewhere at all: where next to nothing of the device's cloud is borne out and
+/// nothing contradicts, the ceiling does not look, and one term stands for all such places.
+[[nodiscard]] bool is_somewhere(const Judgement& judgement, const BeliefOptions& options);
 
 /// What one spot says for a place.
 [[nodiscard]] double evidence_of(const Judgement& judgement, bool fits, const BeliefOptions& options);

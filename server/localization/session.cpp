@@ -34,7 +34,8 @@ PoseEstimate estimate_of(const Spot& spot, const Hypothesis& hypothesis) {
 double log_odds_alone(const std::vector<Hypothesis>& found, const TrackOptions& options) {
   std::vector<double> evidence;
   for (const Hypothesis& h : found)
-    evidence.push_back(evidence_of(h.judgement, fits(h, options), options.belief));
+    if (evidence.empty() || is_somewhere(h.judgement, options.belief))
+      evidence.push_back(evidence_of(h.judgement, fits(h, options), options.belief));
   return log_odds_of(0, evidence, options.belief);
 }
 

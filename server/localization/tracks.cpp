@@ -103,7 +103,8 @@ void Tracks::add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypo
   std::vector<bool> taken(found.size(), false);
   for (Track& track : tracks_) extend(&track, *spot, found, &taken);
   for (std::size_t i = 0; i < found.size(); ++i)
-    if (!taken[i]) tracks_.push_back(founded(found[i]));
+    if (!taken[i] && (tracks_.empty() || is_somewhere(found[i].judgement, options_.belief)))
+      tracks_.push_back(founded(found[i]));
   prune();
 }
 

@@ -30,12 +30,15 @@ bool led(const Evidence& evidence, const VerifyOptions& options) {
 }
 
 bool confirmed(const Evidence& evidence, const VerifyOptions& options) {
-  return led(evidence, options) && holds(evidence, options) &&
+  return led(evidence, options) && follows(evidence, options) &&
+         clean(*evidence.best, evidence.best_estimate, options) &&
          evidence.best->judgement.agree >= options.first_agree;
 }
 
 bool holds(const Evidence& evidence, const VerifyOptions& options) {
-  return follows(evidence, options) && clean(*evidence.best, evidence.best_estimate, options);
+  return follows(evidence, options) && evidence.best->judgement.map_agree >= options.followed_map_agree &&
+         evidence.best->judgement.overlap() >= options.followed_overlap &&
+         sure(evidence.best_estimate, options);
 }
 
 bool contradicted(const Evidence& evidence, const VerifyOptions& options) {

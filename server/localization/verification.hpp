@@ -19,8 +19,9 @@ struct VerifyOptions {
                               ///< may lie where the ceiling does not look
   double much_agrees = 0.5;   ///< less than this share makes such a twin likelier ...
   double twin_odds = 10;      ///< ... by so much in the logarithm, times what lacks
-  double verified_map_agree = 0.96;  ///< least share of agreeing among judged ceiling points ...
+  double verified_map_agree = 0.96;  ///< least share of agreeing among judged ceiling points, at first ...
   double verified_overlap = 0.98;    ///< ... and among judged device points
+  double followed_map_agree = 0.93, followed_overlap = 0.96;    ///< the same once a pose was believed
   double verified_sd_rad = radians(2.0), verified_sd_m = 0.08;  ///< most, in any direction
   double locked_sd_rad = radians(1.0), locked_sd_m = 0.05;      ///< least, to hold a refinement near its start
   double prior_residual_sd_m = 0.05;                            ///< of a pair of it
@@ -50,7 +51,7 @@ struct Evidence {
 [[nodiscard]] bool led(const Evidence& evidence, const VerifyOptions& options);
 /// Whether the spots in memory decide.
 [[nodiscard]] bool confirmed(const Evidence& evidence, const VerifyOptions& options);
-/// Whether a pose that was followed is still verified.
+/// Whether a pose that was followed is still verified: its neighbourhood was weighed already.
 [[nodiscard]] bool holds(const Evidence& evidence, const VerifyOptions& options);
 /// Whether lines of sight speak against a pose that was followed. A pose that is merely seen little is not.
 [[nodiscard]] bool contradicted(const Evidence& evidence, const VerifyOptions& options);

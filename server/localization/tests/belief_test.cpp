@@ -53,6 +53,11 @@ TEST(Belief, ALonePlaceIsHeldAgainstElsewhere) {
   EXPECT_DOUBLE_EQ(log_odds_of(0, {2.0}, kOptions), 2.0 - kOptions.elsewhere);
 }
 
+TEST(Belief, WhereTheCeilingDoesNotLookIsElsewhereAndNoPlaceOfItsOwn) {
+  EXPECT_FALSE(is_somewhere({0.02, 0.0, 0.0, 0.0, 0.0, 0}, kOptions));
+  EXPECT_TRUE(is_somewhere({0.2, 0.0, 1.0, 0.0, 0.1, 0}, kOptions));
+}
+
 TEST(Belief, ARivalThatIsAsGoodLeavesNothingSure) {
   const double clean = evidence_of({0.9, 0.0, 1.0, 0.0, 0.5, 0}, true, kOptions);
   EXPECT_LT(log_odds_of(0, {clean, clean}, kOptions), 0);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 namespace liloc {
 namespace {
 
@@ -92,6 +94,19 @@ TEST(Verification, TheNewestSpotMustBearThePlaceOut) {
   EXPECT_FALSE(conclusive(e, kOptions));
 }
 
+TEST(Verification, FollowingBearsMoreContradictionThanBelievingAtFirst) {
+  for (const auto& [conflict, map_agree, first, followed] :
+       {std::tuple{0.01, 0.99, true, true}, std::tuple{0.03, 0.99, false, true},
+        std::tuple{0.01, 0.94, false, true}, std::tuple{0.06, 0.99, false, false},
+        std::tuple{0.01, 0.91, false, false}}) {
+    Evidence e = agreeing_spots();
+    e.best->judgement.conflict = conflict;
+    e.best->judgement.map_agree = map_agree;
+    EXPECT_EQ(confirmed(e, kOptions), first) << conflict << ' ' << map_agree;
+    EXPECT_EQ(holds(e, kOptions), followed) << conflict << ' ' << map_agree;
+  }
+}
+
 TEST(Verification, WhatIsNotKnownToCentimetresIsNotVerified) {
   Evidence e = agreeing_spots();
   e.own_estimate.covariance = e.best_estimate.covariance = Matrix6d::Identity();
@@ -116,7 +131,7 @@ TEST(Verification, SeenLittleIsNoContradiction) {
 TEST(Verification, WhatConflictsWithTheDeviceDoesNotHold) {
   Evidence e = agreeing_spots();
   EXPECT_TRUE(holds(e, kOptions));
-  e.best->judgement.conflict = 0.03;
+  e.best->judgement.conflict = 0.05;
   EXPECT_FALSE(holds(e, kOptions));
   EXPECT_TRUE(follows(e, kOptions));
 }

@@ -104,8 +104,10 @@ Status run_pairs(const PairsOptions& options) {
     problems.push_back({thin[pair.source], thin[pair.target], pair.T_target_source, 0, i});
     pcl.push_back({shared, pair.T_target_source, ask_pcl(problems.back(), options.threads)});
   }
-  fmt::print("{} thread(s); LiLoc's time holds the features of both clouds, the peers' those of the source\n",
-             options.threads);
+  fmt::print(
+      "\n{} pairs, {} thread(s); LiLoc's time holds the features of both clouds, the peers' those of the "
+      "source\n",
+      pairs->size(), options.threads);
   print_line("LiLoc, all pairs", ours);
   if (problems.empty()) return {};
   print_line("LiLoc, the peers' pairs", ours_of_theirs);

@@ -1,3 +1,4 @@
+#include <pcl/console/print.h>
 #include <pcl/features/fpfh_omp.h>
 #include <pcl/registration/icp.h>
 #include <pcl/registration/sample_consensus_prerejective.h>
@@ -63,6 +64,7 @@ Eigen::Matrix4f refined(const Points::Ptr& source, const Points::Ptr& target, co
 }  // namespace
 
 PeerAnswer ask_pcl(const PeerProblem& problem, int threads) {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // a miss is a row, not a line in between
   const Points::Ptr source = points_of(problem.source), target = points_of(problem.target);
   const Stopwatch of_target;
   const Features::Ptr target_features = features_of(target, threads);

@@ -28,10 +28,10 @@ void print_line(const std::vector<Row>& rows, const std::string& name, const Fil
     refused += !r.reply.verified();
   }
   const auto share = [&](std::size_t k) {
-    return n == 0 ? 0.0 : 100.0 * static_cast<double>(k) / static_cast<double>(n);
+    return n == 0 ? "-" : fmt::format("{:.1f}%", 100.0 * static_cast<double>(k) / static_cast<double>(n));
   };
-  fmt::print("{:>10} {:>6} {:>8.1f}% {:>8.1f}% {:>8.1f}% {:>9} {:>8.1f}%\n", name, n, share(loose),
-             share(strict), share(verified), wrong, share(refused));
+  fmt::print("{:>10} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9}\n", name, n, share(loose), share(strict),
+             share(verified), wrong, share(refused));
 }
 
 }  // namespace
@@ -92,9 +92,9 @@ void print_methods(const std::vector<Method>& methods) {
       const auto share = [&](double deg, double metres) {
         const auto good =
             std::ranges::count_if(m.rows, [&](const Row& r) { return in_band(r) && r.within(deg, metres); });
-        return n == 0 ? 0.0 : 100.0 * static_cast<double>(good) / static_cast<double>(n);
+        return n == 0 ? "-" : fmt::format("{:.0f}", 100.0 * static_cast<double>(good) / static_cast<double>(n));
       };
-      fmt::print(" {:>10.0f} / {:<3.0f}    ", share(10, 0.3), share(3, 0.1));
+      fmt::print(" {:>10} / {:<3}    ", share(10, 0.3), share(3, 0.1));
     }
   };
   for (int d = 0; d < 10; ++d)

@@ -1,5 +1,6 @@
 #include "server/localization/belief.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace liloc {
@@ -18,7 +19,8 @@ bool is_somewhere(const Judgement& judgement, const BeliefOptions& options) {
 double evidence_of(const Judgement& judgement, bool fits, const BeliefOptions& options) {
   const double conflict = judgement.conflict + judgement.map_conflict * judgement.map_seen;
   return -options.unseen * std::log(1.0 + options.least_unseen - judgement.agree) -
-         options.conflict * std::log1p(conflict / options.few_conflict) - (fits ? 0.0 : options.unfit);
+         options.conflict * std::log1p(conflict / options.few_conflict) -
+         options.beyond * std::max(0.0, conflict - options.much_conflict) - (fits ? 0.0 : options.unfit);
 }
 
 std::vector<double> weights_of(const std::vector<Pose>& T_odom_sensors, const BeliefOptions& options) {

@@ -14,6 +14,8 @@ struct BeliefOptions {
   double least_unseen = 0.05;  ///< so much is never borne out
   double conflict = 1.05;      ///< weight of the logarithm of how much contradicts, over ...
   double few_conflict = 0.0007;  ///< ... what little contradicts the right place too, over device points
+  double much_conflict = 0.06;   ///< more than this was never seen at the right place ...
+  double beyond = 50;            ///< ... and weighs so much besides, times what is beyond it
   double somewhere = 0.05;  ///< least share of the device's cloud that is borne out, to be a place of its own
   double unfit = 5.6;  ///< for a spot that contradicts the place clearly or that refinement leads away from it
   double elsewhere = -8.1;  ///< of the device being where nothing was found: outside the covered area, say

@@ -27,6 +27,16 @@ TEST(Belief, MoreThatAgreesSpeaksForAPlaceAndMoreThatContradictsAgainstIt) {
   EXPECT_LT(evidence_of(most, false, kOptions), evidence_of(half, true, kOptions));
 }
 
+TEST(Belief, WhatContradictsMoreThanEverTheRightPlaceWeighsBeyondTheLogarithm) {
+  const auto contradicted_by = [](double conflict) {
+    return evidence_of({0.9, conflict, 1.0, 0.0, 0.5, 0}, true, kOptions);
+  };
+  const double most = kOptions.much_conflict;
+  EXPECT_NEAR(contradicted_by(most / 4) - contradicted_by(most / 2), kOptions.conflict * std::log(2.0), 0.05);
+  EXPECT_NEAR(contradicted_by(most) - contradicted_by(2 * most),
+              kOptions.conflict * std::log(2.0) + kOptions.beyond * most, 0.05);
+}
+
 TEST(Belief, SpotsOfOneViewCountAsOne) {
   EXPECT_TRUE(weights_of({}, kOptions).empty());
   const auto same = weights_of({at(0), at(0), at(0)}, kOptions);

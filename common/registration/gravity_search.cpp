@@ -17,7 +17,7 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kFirstPoints = 160;  // that score every place
-constexpr std::size_t kHeap = 4000;        // places that survive, per thread
+constexpr std::size_t kHeap = 1200;        // places that survive, per thread
 constexpr Climber::Steps kFirstClimb{0.1, radians(2.5), 0, 2, 80};
 constexpr Climber::Steps kSecondClimb{0.1, radians(2.5), 2, 6, 240};
 
@@ -50,22 +50,28 @@ class Best {
   std::vector<Cell> heap_;
 };
 
-/// Offers every place of slab `here` that no neighbour in x, y and z beats. Slabs below and above may be null.
-void offer_maxima(const std::int16_t* below, const std::vector<std::int16_t>& here, const std::int16_t* above,
-                  int width, int height, int z, int yaw, std::vector<std::uint32_t>* high, Best* best) {
-  const auto beaten = [&](const std::int16_t* slab, int x, int y, std::int16_t s) {
+/// The sums of one height, and which exceed what was known then of the best.
+struct Slab {
+  std::vector<std::int16_t> sums;
+  std::vector<std::uint32_t> above;
+};
+
+/// Offers every place of `here` that no neighbour in x, y and z beats. Slabs below and above may be null.
+void offer_maxima(const Slab* below, const Slab& here, const Slab* above, const RowSums& shape, int z, int yaw,
+                  Best* best) {
+  const int width = shape.width(), height = shape.height();
+  const auto beaten = [&](const Slab* slab, int x, int y, std::int16_t s) {
     if (slab == nullptr) return false;
     for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
       for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
-        if (slab[v * width + u] > s) return true;
+        if (slab->sums[static_cast<std::size_t>(v * width + u)] > s) return true;
     return false;
   };
-  find_above(here, best->threshold(), high);
-  for (const std::uint32_t i : *high) {
-    const std::int16_t s = here[i];
+  for (const std::uint32_t i : here.above) {
+    const std::int16_t s = here.sums[i];
     const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
     if (s <= best->threshold()) continue;
-    if (beaten(here.data(), x, y, s) || beaten(below, x, y, s) || beaten(above, x, y, s)) continue;
+    if (beaten(&here, x, y, s) || beaten(below, x, y, s) || beaten(above, x, y, s)) continue;
     best->offer({s, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), static_cast<std::int16_t>(z),
                  static_cast<std::int16_t>(yaw)});
   }
@@ -114,13 +120,12 @@ std::vector<CellOffset> offsets_of(const Cloud& level, const Eigen::Matrix3f& R,
 
 /// Scores every position of one yaw.
 void search_yaw(int depth, int yaw, RowSums* sums, Best* best) {
-  std::array<std::vector<std::int16_t>, 3> slabs;  // heights z - 2, z - 1, z
-  std::vector<std::uint32_t> high;
+  std::array<Slab, 3> slabs;  // heights z - 2, z - 1, z
   for (int z = 0; z <= depth; ++z) {
-    if (z < depth) slabs[2] = sums->at_height(z);
+    if (z < depth) slabs[2].sums = sums->at_height(z, best->threshold(), &slabs[2].above);
     if (z > 0)
-      offer_maxima(z > 1 ? slabs[0].data() : nullptr, slabs[1], z < depth ? slabs[2].data() : nullptr,
-                   sums->width(), sums->height(), z - 1, yaw, &high, best);
+      offer_maxima(z > 1 ? &slabs[0] : nullptr, slabs[1], z < depth ? &slabs[2] : nullptr, *sums, z - 1, yaw,
+                   best);
     std::rotate(slabs.begin(), slabs.begin() + 1, slabs.end());
   }
 }
@@ -132,8 +137,9 @@ std::vector<Cell> search_coarse(const ScoreField& field, const Cloud& level,
   const int yaws = std::max(1, static_cast<int>(std::lround(360.0 / options.yaw_step_deg)));
   const int threads = std::clamp(options.threads, 1, 64);
   std::vector<Best> best(static_cast<std::size_t>(threads), Best(kHeap));
+  const RowCrests crests(field, RowSums::kBlock);
   const auto work = [&](int worker) {  // fixed shares, so that the answer does not depend on scheduling
-    RowSums sums(field);
+    RowSums sums(field, crests);
     for (int yaw = worker; yaw < yaws && std::chrono::steady_clock::now() < deadline; yaw += threads) {
       const Eigen::Matrix3f R = yaw_rotation(yaw * 2 * M_PI / yaws, options.up_map).cast<float>();
       sums.take(offsets_of(level, R, field.cell_m()));

@@ -3,75 +3,74 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "common/registration/simd.hpp"
 
 namespace liloc {
 namespace {
 
-constexpr int kBlock = 32;         // places at once
+constexpr int kBlock = RowSums::kBlock;
 constexpr std::size_t kGroup = 8;  // rows that add up in a byte
+constexpr std::int16_t kBelow = std::numeric_limits<std::int16_t>::min();
 
-struct One {  // block at a time
-  using Bytes = std::int8_t __attribute__((vector_size(kBlock)));
-  using Words = std::int16_t __attribute__((vector_size(2 * kBlock)));
-};
-struct Two {  // blocks at a time
-  using Bytes = std::int8_t __attribute__((vector_size(2 * kBlock)));
-  using Words = std::int16_t __attribute__((vector_size(4 * kBlock)));
-};
+using Bytes = std::int8_t __attribute__((vector_size(kBlock)));
+using Words = std::int16_t __attribute__((vector_size(2 * kBlock)));
 
-/// Adds the same places of all rows.
-template <class Blocks>
-[[gnu::always_inline]] inline void sum_block(const std::int8_t* cells, const std::ptrdiff_t* rows,
-                                             std::size_t count, std::int16_t* sums) {
-  using Bytes = typename Blocks::Bytes;
-  using Words = typename Blocks::Words;
+/// sums[i] = row(0)[i] + row(1)[i] + ... for a block.
+template <class Row>
+[[gnu::always_inline]] inline void sum_block(const Row& row, std::size_t count, Words* sums) {
   Words total{};
-  const auto add = [&](std::size_t k, Bytes* bytes) {
-    Bytes row;
-    std::memcpy(&row, cells + rows[k], sizeof row);
-    *bytes += row;
-  };
   std::size_t k = 0;
   for (; k + kGroup <= count; k += kGroup) {
-    Bytes bytes{};
-    for (std::size_t i = 0; i < kGroup; ++i) add(k + i, &bytes);
-    total += __builtin_convertvector(bytes, Words);
+    Bytes group{};
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      Bytes more;
+      std::memcpy(&more, row(k + i), sizeof more);
+      group += more;
+    }
+    total += __builtin_convertvector(group, Words);
   }
-  Bytes bytes{};
-  for (; k < count; ++k) add(k, &bytes);
-  total += __builtin_convertvector(bytes, Words);
+  for (; k < count; ++k) {
+    Bytes more;
+    std::memcpy(&more, row(k), sizeof more);
+    total += __builtin_convertvector(more, Words);
+  }
+  *sums = total;
+}
+
+/// The same places of all columns added.
+LILOC_WIDEST void sum_columns(const std::int8_t* const* columns, std::ptrdiff_t shift, std::size_t count,
+                              int height, std::int16_t* sums) {
+  for (int y = 0; y < height; y += kBlock) {
+    Words total;
+    sum_block([&](std::size_t k) { return columns[k] + shift + y; }, count, &total);
+    std::memcpy(sums + y, &total, sizeof total);
+  }
+}
+
+/// A block of a row; whether any place of it exceeds the threshold.
+LILOC_WIDEST bool sum_rows(const std::int8_t* cells, const std::ptrdiff_t* rows, std::size_t count,
+                           std::int16_t threshold, std::int16_t* sums) {
+  Words total;
+  sum_block([&](std::size_t k) { return cells + rows[k]; }, count, &total);
   std::memcpy(sums, &total, sizeof total);
-}
-
-/// sums[i] = cells[rows[0] + i] + cells[rows[1] + i] + ... over a whole row.
-LILOC_WIDEST void sum_rows(const std::int8_t* cells, const std::ptrdiff_t* rows, std::size_t count, int width,
-                           std::int16_t* sums) {
-  int x = 0;
-  for (; x + 2 * kBlock <= width; x += 2 * kBlock) sum_block<Two>(cells + x, rows, count, sums + x);
-  if (x < width) sum_block<One>(cells + x, rows, count, sums + x);
-}
-
-/// Which blocks hold a value above the threshold; `found` has room for all. Returns how many do.
-LILOC_WIDEST std::size_t blocks_above(const std::int16_t* values, std::size_t blocks, std::int16_t threshold,
-                                      std::uint32_t* found) {
-  std::size_t count = 0;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    std::int16_t most = values[b * kBlock];
-    for (std::size_t i = 1; i < kBlock; ++i) most = std::max(most, values[b * kBlock + i]);
-    found[count] = static_cast<std::uint32_t>(b);
-    count += most > threshold ? 1 : 0;
-  }
-  return count;
+  const Words exceeds = total > threshold;
+  std::uint64_t any[sizeof exceeds / sizeof(std::uint64_t)], some = 0;
+  std::memcpy(any, &exceeds, sizeof exceeds);
+  for (const std::uint64_t part : any) some |= part;
+  return some != 0;
 }
 
 }  // namespace
 
-RowSums::RowSums(const ScoreField& field)
+RowSums::RowSums(const ScoreField& field, const RowCrests& crests)
     : field_(field),
-      width_((field.size().x() + kBlock - 1) / kBlock * kBlock),
+      crests_(crests),
+      width_((field.size().x() + 31) / 32 * 32),
       height_(field.size().y()),
+      height_padded_((height_ + kBlock - 1) / kBlock * kBlock),
+      bounds_(static_cast<std::size_t>(width_ / kBlock * height_padded_)),
       sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
 
 void RowSums::take(std::vector<CellOffset> offsets) {
@@ -80,33 +79,60 @@ void RowSums::take(std::vector<CellOffset> offsets) {
   std::ranges::stable_sort(offsets_, {}, &CellOffset::y);
 }
 
-const std::vector<std::int16_t>& RowSums::at_height(int z) {
+/// The rows and columns of the offsets that are inside at one height.
+void RowSums::select(int z) {
   const std::int8_t* cells = field_.row(0, 0, 0);
   const std::ptrdiff_t stride = field_.stride();
   rows_.clear();
   rows_y_.clear();
+  columns_.clear();
+  beyond_ = 0;
   for (const CellOffset& o : offsets_) {
     if (z + o.z < 0 || z + o.z >= field_.size().z()) continue;
     rows_.push_back(field_.row(0, z + o.z, o.plane) - cells + o.y * stride + o.x);
     rows_y_.push_back(o.y);
+    if (std::abs(o.y) <= RowCrests::kPad)
+      columns_.push_back(crests_.column(o.x, z + o.z, o.plane) + o.y);
+    else
+      beyond_ += ScoreField::kSurface;
   }
-  for (int y = 0; y < height_; ++y) {
-    const auto first = std::ranges::lower_bound(rows_y_, -y) - rows_y_.begin();
-    const auto last = std::ranges::lower_bound(rows_y_, height_ - y) - rows_y_.begin();
-    sum_rows(cells + y * stride, rows_.data() + first, static_cast<std::size_t>(last - first), width_,
-             sums_.data() + static_cast<std::ptrdiff_t>(y) * width_);
-  }
-  return sums_;
 }
 
-void find_above(const std::vector<std::int16_t>& sums, int threshold, std::vector<std::uint32_t>* found) {
-  const std::size_t blocks = sums.size() / kBlock;
-  std::vector<std::uint32_t> above(blocks);
-  above.resize(blocks_above(sums.data(), blocks, static_cast<std::int16_t>(threshold), above.data()));
-  found->clear();
-  for (const std::uint32_t b : above)
-    for (std::uint32_t i = b * kBlock; i < (b + 1) * kBlock; ++i)
-      if (sums[i] > threshold) found->push_back(i);
+/// What no place of a block exceeds.
+void RowSums::bound() {
+  for (int b = 0; b < width_ / kBlock; ++b)
+    sum_columns(columns_.data(),
+                static_cast<std::ptrdiff_t>(b) * (kBlock / RowCrests::kStep) * crests_.stride(),
+                columns_.size(), height_padded_, &bounds_[static_cast<std::size_t>(b * height_padded_)]);
+}
+
+/// The blocks of a row that may exceed the threshold, from the offsets first .. last - 1.
+void RowSums::sum_row(int y, std::size_t first, std::size_t last, int threshold,
+                      std::vector<std::uint32_t>* above) {
+  const std::int8_t* cells = field_.row(y, 0, 0);
+  for (int b = 0; b < width_ / kBlock; ++b) {
+    if (bounds_[static_cast<std::size_t>(b * height_padded_ + y)] + beyond_ <= threshold) continue;
+    const auto begin = static_cast<std::size_t>(y * width_ + b * kBlock);
+    if (!sum_rows(cells + b * kBlock, rows_.data() + first, last - first, static_cast<std::int16_t>(threshold),
+                  &sums_[begin]))
+      continue;
+    for (std::size_t i = begin; i < begin + kBlock; ++i)
+      if (sums_[i] > threshold) above->push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+const std::vector<std::int16_t>& RowSums::at_height(int z, int threshold, std::vector<std::uint32_t>* above) {
+  select(z);
+  bound();
+  std::ranges::fill(sums_, kBelow);
+  above->clear();
+  std::size_t first = rows_y_.size(), last = first;  // of the offsets that are inside at one y
+  for (int y = 0; y < height_; ++y) {
+    while (first > 0 && rows_y_[first - 1] >= -y) --first;
+    while (last > 0 && rows_y_[last - 1] >= height_ - y) --last;
+    sum_row(y, first, last, threshold, above);
+  }
+  return sums_;
 }
 
 }  // namespace liloc

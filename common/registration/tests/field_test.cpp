@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <random>
 
 #include "common/registration/climber.hpp"
@@ -9,22 +11,31 @@
 namespace liloc {
 namespace {
 
+std::vector<CellOffset> some_offsets(unsigned seed) {
+  std::mt19937_64 rng(seed);
+  std::vector<CellOffset> offsets;
+  for (int i = 0; i < 61; ++i) {  // not a multiple of eight
+    const auto within = [&](int most) { return static_cast<int>(rng() % (2 * most + 1)) - most; };
+    offsets.push_back({within(30), within(50), within(10), static_cast<int>(rng() % ScoreField::kDirections)});
+  }
+  return offsets;
+}
+
+constexpr int kLeast = std::numeric_limits<std::int16_t>::min();
+
 class FieldLaw : public testing::TestWithParam<unsigned> {};
 
 TEST_P(FieldLaw, RowsAddUpToWhatPlacesScoreOneByOne) {
   const WatchedRoom w = watched_room(GetParam());
   const ScoreField& field = w.target->field_coarse();
-  std::mt19937_64 rng(GetParam());
-  std::vector<CellOffset> offsets;
-  for (int i = 0; i < 61; ++i) {  // not a multiple of eight
-    const auto within = [&](int most) { return static_cast<int>(rng() % (2 * most + 1)) - most; };
-    offsets.push_back({within(30), within(30), within(10), static_cast<int>(rng() % ScoreField::kDirections)});
-  }
-  RowSums sums(field);
+  const std::vector<CellOffset> offsets = some_offsets(GetParam());
+  const RowCrests crests(field, RowSums::kBlock);
+  RowSums sums(field, crests);
   sums.take(offsets);
   const auto cell = static_cast<float>(field.cell_m());
+  std::vector<std::uint32_t> above;
   for (const int z : {0, 3, field.size().z() - 1}) {
-    const auto& got = sums.at_height(z);
+    const auto& got = sums.at_height(z, kLeast, &above);
     for (int y = 0; y < field.size().y(); y += 3)
       for (int x = 0; x < field.size().x(); ++x) {
         int expected = 0;
@@ -35,6 +46,43 @@ TEST_P(FieldLaw, RowsAddUpToWhatPlacesScoreOneByOne) {
         ASSERT_EQ(got[static_cast<std::size_t>(y * sums.width() + x)], expected) << x << " " << y << " " << z;
       }
   }
+}
+
+TEST_P(FieldLaw, SumsAboveAThresholdAreFoundAndExact) {
+  const WatchedRoom w = watched_room(GetParam());
+  const ScoreField& field = w.target->field_coarse();
+  const RowCrests crests(field, RowSums::kBlock);
+  RowSums sums(field, crests);
+  sums.take(some_offsets(GetParam()));
+  std::vector<std::uint32_t> above;
+  for (int z = 0; z < field.size().z(); z += 2) {
+    const std::vector<std::int16_t> all = sums.at_height(z, kLeast, &above);
+    const int most = *std::ranges::max_element(all);
+    for (const int threshold : {-100, 0, most / 2, most - 1, most}) {
+      const auto& got = sums.at_height(z, threshold, &above);
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < all.size(); ++i) {
+        if (all[i] > threshold) expected.push_back(i);
+        ASSERT_TRUE(got[i] == all[i] || (got[i] < all[i] && all[i] <= threshold)) << i << " of height " << z;
+      }
+      EXPECT_EQ(above, expected);
+    }
+  }
+}
+
+TEST_P(FieldLaw, ACrestIsTheGreatestCellOfItsBlockOrOfAStepBeside) {
+  const WatchedRoom w = watched_room(GetParam());
+  const ScoreField& field = w.target->field_coarse();
+  const RowCrests crests(field, 16);
+  for (int plane = 0; plane < ScoreField::kDirections; ++plane)
+    for (int z = 0; z < field.size().z(); z += 3)
+      for (int y = 0; y < field.size().y(); ++y)
+        for (int x = 4 - field.pad(); x <= field.size().x(); x += 3) {
+          const std::int8_t* row = field.row(y, z, plane) + x;
+          const int crest = crests.column(x, z, plane)[y];
+          ASSERT_GE(crest, *std::max_element(row, row + 16));
+          ASSERT_LE(crest, *std::max_element(row - 3, row + 20));
+        }
 }
 
 TEST_P(FieldLaw, ManyProbesAreWorthWhatEachIs) {
@@ -56,19 +104,6 @@ TEST_P(FieldLaw, ManyProbesAreWorthWhatEachIs) {
     ASSERT_EQ(worths[i],
               field.at(Eigen::Vector3f(probes.x[i], probes.y[i], probes.z[i]) + shift, probes.plane[i]));
   EXPECT_GT(std::count_if(worths.begin(), worths.end(), [](int v) { return v != 0; }), 50);
-}
-
-TEST_P(FieldLaw, FindsTheSumsAboveAThreshold) {
-  std::mt19937_64 rng(GetParam());
-  std::vector<std::int16_t> sums(32 * 40);
-  for (auto& s : sums) s = static_cast<std::int16_t>(rng() % 2001) - 1000;
-  for (const int threshold : {-1001, 0, 990, 1000}) {
-    std::vector<std::uint32_t> expected, found;
-    for (std::uint32_t i = 0; i < sums.size(); ++i)
-      if (sums[i] > threshold) expected.push_back(i);
-    find_above(sums, threshold, &found);
-    EXPECT_EQ(found, expected);
-  }
 }
 
 TEST_P(FieldLaw, APlaneIsTheOctantThatANormalPointsTo) {

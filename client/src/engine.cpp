@@ -72,7 +72,7 @@ struct Engine::Impl {
   [[nodiscard]] Result<Cloud> cloud_of(const DepthImage& image, const Camera& camera,
                                        const Cloud* points) const;
   void note_motion(StampNs stamp_ns, const Placed& placed);
-  void ask_if_due(const DepthImage& image, const Cloud* points, bool informative);
+  void ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed);
 
   EngineOptions options;
   int thinning;
@@ -138,13 +138,13 @@ Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points,
   return placed;
 }
 
-void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, bool informative) {
+void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed) {
   for (const std::uint64_t seq : schedule.take_unanswered(image.stamp_ns)) {
     unanswered.push_back(seq);
     log::warning("{}: request {} was not answered within {:.1f} s", options.client_id, seq,
                  to_seconds(options.reply_timeout_ns));
   }
-  if (!schedule.due(image.stamp_ns, informative)) return;
+  if (!schedule.due(image.stamp_ns, placed.informative, !placed.step.doubtful)) return;
   auto made = cloud_of(image, options.camera, points).and_then([&](const Cloud& cloud_sensor) {
     return requests.make(cloud_sensor, odometry.map(), imu ? &*imu : nullptr);
   });
@@ -152,7 +152,10 @@ void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, bool
     log::warning("{}: frame {} is not sent: {}", options.client_id, image.stamp_ns, made.error().message);
     return;
   }
-  if (external) external->anchor();
+  if (external)
+    external->mark();
+  else
+    odometry.mark();
   schedule.sent(made->seq, made->stamp_ns);
   request = std::move(*made);
 }
@@ -175,7 +178,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.stamp_ns = image.stamp_ns;
   frame.informative = placed->informative;
   frame.method = step.method;
-  frame.converged = step.converged && !step.jumped;
+  frame.converged = step.converged && !step.jumped && !step.doubtful;
   frame.T_odom_sensor = step.T_odom_sensor;
   frame.odom_segment = step.segment;
   frame.residual_m = step.residual_m;
@@ -183,7 +186,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   inputs.note(spread.fault, step.residual_m, step.strain);
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   frame.latency_ms = watch.elapsed_ms();
-  ask_if_due(image, points, placed->informative);
+  ask_if_due(image, points, *placed);
   return frame;
 }
 

@@ -58,9 +58,9 @@ void ExternalOdometry::place(const Entry& entry, const Pose& T_odom_base, Odomet
   last_covariance_ = entry.sample.covariance;
   step.T_odom_sensor = T_odom_last_;
   step.segment = last_segment_;
-  if (!last_covariance_ || !anchor_) return;
-  step.sd_rad = grown_sd(*last_covariance_, *anchor_, 0);
-  step.sd_m = grown_sd(*last_covariance_, *anchor_, 3);
+  if (!last_covariance_ || !marked_) return;
+  step.sd_rad = grown_sd(*last_covariance_, *marked_, 0);
+  step.sd_m = grown_sd(*last_covariance_, *marked_, 3);
 }
 
 OdometryStep ExternalOdometry::step(StampNs stamp_ns) {

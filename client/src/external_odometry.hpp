@@ -28,7 +28,7 @@ class ExternalOdometry {
   [[nodiscard]] OdometryStep step(StampNs stamp_ns);
   [[nodiscard]] bool placed() const { return placed_; }
   /// The growth of the covariance is counted from the last step on.
-  void anchor() { anchor_ = last_covariance_; }
+  void mark() { marked_ = last_covariance_; }
 
  private:
   struct Entry {
@@ -43,7 +43,7 @@ class ExternalOdometry {
   Pose T_odom_last_ = Pose::Identity();
   std::uint32_t last_segment_ = 0;
   bool placed_ = false;
-  std::optional<Matrix6d> last_covariance_, anchor_;
+  std::optional<Matrix6d> last_covariance_, marked_;
 };
 
 }  // namespace liloc

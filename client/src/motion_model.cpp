@@ -8,9 +8,12 @@ namespace {
 
 constexpr double kAccelSd = 4.0;                        // m/s^2: how hard people push a device about
 constexpr double kTurnAccelSd = 10.0;                   // rad/s^2: the same in rotation, where no gyro tells
+constexpr double kStepSdRad = 0.003, kStepSdM = 0.002;  // of a guess without an IMU, at least ...
+constexpr double kMostSdRad = 1, kMostSdM = 2;          // ... and at most
 constexpr double kImuAccelSd = 0.4;                     // m/s^2: what is left of it after the accelerometer
-constexpr double kVelocitySd = 0.05;                    // m/s: of the velocity that a guess starts from
-constexpr double kGyroSd = 0.004;                       // rad/s: noise, bias and timing together
+constexpr double kImuTurnAccelSd = 0.06;  // rad/s^2: the same after the gyro, in 15 frames a second
+constexpr double kVelocitySd = 0.05;      // m/s: of the velocity that a guess starts from
+constexpr double kGyroSd = 0.004;         // rad/s: noise, bias and timing together
 constexpr double kStillSdRad = 1e-4, kStillSdM = 1e-3;  // of a frame's motion while the device stands still
 constexpr double kFadingS =
     0.4;  // without an IMU a motion that is no longer seen dies away with this time constant
@@ -32,17 +35,26 @@ Matrix6d sensor_of_imu(const Eigen::Vector3d& lever) {
 
 MotionGuess MotionModel::guess(const FrameStep& step, const ImuTrack* imu) {
   by_imu_ = imu != nullptr && imu->covers(step.from_ns, step.to_ns);
-  return by_imu_ ? by_imu(step, *imu) : by_constant_velocity(step);
+  if (!by_filter())
+    doubt_.predict(to_seconds(step.to_ns - step.from_ns), by_imu_ ? kImuAccelSd : kAccelSd,
+                   by_imu_ ? kImuTurnAccelSd : kTurnAccelSd);
+  const MotionGuess guess = by_imu_ ? by_imu(step, *imu) : by_constant_velocity(step);
+  if (by_filter()) doubt_.place(guess.covariance);
+  return guess;
 }
 
 MotionGuess MotionModel::by_constant_velocity(const FrameStep& step) const {
   const double dt = to_seconds(std::min(step.to_ns - step.from_ns, kLongestStepNs));
-  const double blind = to_seconds(step.to_ns - step.anchored_ns);
   Pose T = Pose::Identity();
   T.linear() = step.T_odom_from.linear() * so3_exp(turn_rate_ * dt);
   T.translation() = step.T_odom_from.translation() + velocity_odom_ * dt;
-  return {T, std::min(0.5, 0.003 + 0.5 * kTurnAccelSd * blind * blind),
-          std::min(1.0, 0.002 + kVelocitySd * blind + 0.5 * kAccelSd * blind * blind)};
+  Matrix6d covariance = doubt_.pose();
+  covariance.diagonal().head<3>().array() += kStepSdRad * kStepSdRad;
+  covariance.diagonal().tail<3>().array() += kStepSdM * kStepSdM;
+  const MotionGuess guess(T, covariance);
+  Vector6d scale = Vector6d::Constant(std::min(1.0, kMostSdM / guess.sd_m()));
+  scale.head<3>().setConstant(std::min(1.0, kMostSdRad / guess.sd_rad()));
+  return {T, Matrix6d(scale.asDiagonal() * covariance * scale.asDiagonal())};
 }
 
 MotionGuess MotionModel::by_imu(const FrameStep& step, const ImuTrack& imu) {
@@ -94,14 +106,24 @@ MotionGuess MotionModel::by_preintegration(const FrameStep& step, const ImuTrack
 void MotionModel::learn(const FrameStep& step, const MotionGuess& guess, const MotionGuess& measured) {
   const Pose& T = measured.T_map_sensor;
   const Pose T_sensor_imu = T_imu_sensor_ ? T_imu_sensor_->inverse() : Pose::Identity();
-  if (by_imu_ && filter_) {
+  if (by_filter()) {
     const Matrix6d M = sensor_of_imu(T.linear() * T_sensor_imu.translation()).inverse();
     filter_->settle(T * T_sensor_imu, M * measured.covariance * M.transpose());
+    doubt_.place(measured.covariance);
   }
+  Vector6d shift, rate = Vector6d::Zero();
+  shift << so3_log(T.linear() * guess.T_map_sensor.linear().transpose()),
+      T.translation() - guess.T_map_sensor.translation();
+  if (!by_filter()) rate = doubt_.settle(measured.covariance.inverse() - guess.covariance.inverse(), shift);
   if (step.anchored_ns != step.from_ns) return;  // the step began at a guess
   const double dt = to_seconds(step.to_ns - step.from_ns);
-  velocity_odom_ = (T.translation() - step.T_odom_from.translation()) / dt;
-  turn_rate_ = so3_log(step.T_odom_from.linear().transpose() * T.linear()) / dt;
+  if (by_imu_) {
+    velocity_odom_ = (T.translation() - step.T_odom_from.translation()) / dt;
+    turn_rate_ = so3_log(step.T_odom_from.linear().transpose() * T.linear()) / dt;
+  } else {
+    velocity_odom_ += rate.tail<3>();
+    turn_rate_ += T.linear().transpose() * rate.head<3>();
+  }
   // Algorithm 1 takes the velocity back from the refined transform. Only its error is taken here, so that the
   // acceleration within the step, which the guess knows, is not averaged away.
   const auto imu_at = [&](const Pose& T_odom_sensor) {
@@ -113,9 +135,11 @@ void MotionModel::learn(const FrameStep& step, const MotionGuess& guess, const M
     velocity_imu_odom_ = (imu_at(T) - imu_at(step.T_odom_from)) / dt;
 }
 
-void MotionModel::relocated(const Pose& T_odom_sensor) {
+void MotionModel::relocated(const MotionGuess& measured) {
+  doubt_.place(measured.covariance);
   velocity_odom_ = velocity_imu_odom_ = turn_rate_ = Eigen::Vector3d::Zero();
-  if (filter_) filter_->place(T_odom_sensor * T_imu_sensor_->inverse(), velocity_odom_, kVagueVelocitySd);
+  if (filter_)
+    filter_->place(measured.T_map_sensor * T_imu_sensor_->inverse(), velocity_odom_, kVagueVelocitySd);
 }
 
 void MotionModel::fade(const FrameStep& step) {
@@ -123,6 +147,11 @@ void MotionModel::fade(const FrameStep& step) {
   const double left = std::exp(-to_seconds(step.to_ns - step.from_ns) / kFadingS);
   velocity_odom_ *= left;
   turn_rate_ *= left;
+}
+
+void MotionModel::restart() {
+  halt();
+  doubt_.restart();
 }
 
 void MotionModel::halt() {

@@ -1,6 +1,7 @@
 #pragma once
 #include "client/src/imu_track.hpp"
 #include "client/src/inertial_filter.hpp"
+#include "client/src/motion_doubt.hpp"
 #include "common/registration/scan_match.hpp"
 
 namespace liloc {
@@ -30,11 +31,16 @@ class MotionModel {
   /// The pose that was measured after `guess`, with its covariance (as MotionGuess has it): teaches the motion.
   void learn(const FrameStep& step, const MotionGuess& guess, const MotionGuess& measured);
   /// The device was found without the guess.
-  void relocated(const Pose& T_odom_sensor);
+  void relocated(const MotionGuess& measured);
   /// A step that nobody measured and no IMU felt: the motion dies away.
   void fade(const FrameStep& step);
   void halt();
+  /// The map begins anew where the device is.
+  void restart();
   [[nodiscard]] const std::optional<InertialFilter>& filter() const { return filter_; }
+  /// Of the newest pose against the map, measured or guessed; axes as MotionGuess has them. A guess's own
+  /// covariance is that of the step alone where no filter makes it.
+  [[nodiscard]] Matrix6d covariance() const { return doubt_.pose(); }
 
  private:
   [[nodiscard]] MotionGuess by_imu(const FrameStep& step, const ImuTrack& imu);
@@ -42,11 +48,13 @@ class MotionModel {
   [[nodiscard]] MotionGuess by_preintegration(const FrameStep& step, const ImuTrack& imu);
   [[nodiscard]] MotionGuess by_constant_velocity(const FrameStep& step) const;
   void start_filter(const FrameStep& step, const ImuTrack& imu);
+  [[nodiscard]] bool by_filter() const { return by_imu_ && filter_; }
 
   std::optional<Pose> T_imu_sensor_;
   InertialMethod method_;
   std::optional<InertialFilter> filter_;
   StampNs filter_ns_ = 0;  ///< to which the filter has come
+  MotionDoubt doubt_;
   bool stood_still_ = false;
   bool by_imu_ = false;                                          ///< the last guess was
   Eigen::Vector3d velocity_odom_ = Eigen::Vector3d::Zero();      ///< of the sensor, m/s

@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/src/match_check.hpp"
 #include "client/src/relocate.hpp"
 #include "common/base/log.hpp"
 
 namespace liloc {
 namespace {
 
-constexpr double kVagueM = 0.15;                       // a guess worse than that does not speak for a match
 constexpr double kVagueRad = 0.1, kPoorOverlap = 0.8;  // one turned by more may lead to a wrong match
 constexpr double kReachM = 0.3, kReachSpeed = 2;  // m/s: nobody carries a device off faster while it is blind
 constexpr double kGyroTrustRad = 0.2;             // the gyro cannot be off by more over a bridged stretch
+constexpr double kGuessedSdM = 0.02;              // of a pose that the scene showed along some axes only
+constexpr double kLastingDoubt = 4;  // of variances: errors of the map last, and people are not in the model
+
+double largest_sd_m(const Matrix6d& covariance) {
+  return std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
+}
 
 }  // namespace
 
@@ -22,49 +28,34 @@ Odometry::Odometry(const OdometryOptions& options)
       motion_(options.T_imu_sensor, options.method == LocalMethod::cloud ? InertialMethod::preintegration
                                                                          : InertialMethod::algorithm1) {}
 
-bool Odometry::believable(const ScanMatch& match, const MotionGuess& guess, const DepthImage& image) const {
-  const double turned = angle_between_rad(match.T_map_sensor, guess.T_map_sensor);
-  const double moved = distance_m(match.T_map_sensor, guess.T_map_sensor);
-  if (match.overlap < options_.min_overlap || turned > 0.05 + 4 * guess.sd_rad() ||
-      moved > 0.05 + 4 * guess.sd_m())
-    return false;
-  return guess.sd_m() < kVagueM || consistent(match, image);
-}
-
-bool Odometry::consistent(const ScanMatch& match, const DepthImage& image) const {
-  const auto view = map_.compare(match.T_map_sensor, image, options_.camera, options_.max_range_m);
-  log::debug("view: {} agree, {} seen through, {} hidden; overlap {:.2f} of {:.2f}", view.agree, view.through,
-             view.hidden, match.overlap, match.paired);
-  return match.overlap >= options_.min_overlap_lost && match.overlap >= 0.75 * match.paired &&
-         view.refuted_share() <= options_.max_refuted_share;
-}
-
-bool Odometry::unhidden(const ScanMatch& match, const DepthImage& image) const {
-  const auto view = map_.compare(match.T_map_sensor, image, options_.camera, options_.max_range_m);
-  return view.hidden <= view.agree + view.through;
+/// From the guess, or from all over its region where that is large and the frame hardly fits.
+std::optional<ScanMatch> Odometry::match_near(const std::vector<Surfel>& frame, const MotionGuess& guess,
+                                              const MatchCheck& check, StampNs stamp_ns) const {
+  auto found = match_scan(map_, frame, guess, stamp_ns);
+  if (!found) return std::nullopt;
+  std::optional<ScanMatch> best;
+  if (check.believable(*found)) best = *found;
+  if (guess.sd_rad() > kVagueRad && found->overlap < kPoorOverlap)
+    for (const ScanMatch& wide : match_widely(map_, frame, guess, stamp_ns))
+      if (check.believable(wide) && check.unhidden(wide) && (!best || check.merit(wide) > check.merit(*best)))
+        best = wide;
+  log::debug(
+      "match: {}overlap {:.2f} paired {:.2f} rmse {:.1f} mm, {} unobserved, {} iterations, {:.1f} mm {:.3f} "
+      "deg from a guess good to {:.1f} mm {:.3f} deg, map {}",
+      best ? "" : "not believed: ", found->overlap, found->paired, 1e3 * found->rmse_m, found->unobserved,
+      found->iterations, 1e3 * distance_m(found->T_map_sensor, guess.T_map_sensor),
+      degrees(angle_between_rad(found->T_map_sensor, guess.T_map_sensor)), 1e3 * guess.sd_m(),
+      degrees(guess.sd_rad()), map_.size());
+  return best;
 }
 
 std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vector<Surfel>& frame,
                                          const MotionGuess& guess, OdometryStep& step) {
-  auto found = match_scan(map_, frame, guess, image.stamp_ns);
-  if (found && guess.sd_rad() > kVagueRad && found->overlap < kPoorOverlap)
-    for (ScanMatch& wide : match_widely(map_, frame, guess, image.stamp_ns))
-      if (believable(wide, guess, image) && unhidden(wide, image)) {
-        found = std::move(wide);
-        break;
-      }
-  if (found)
-    log::debug(
-        "match: overlap {:.2f} paired {:.2f} rmse {:.1f} mm, {} unobserved, {} iterations, {:.1f} mm {:.3f} "
-        "deg "
-        "from a guess good to {:.1f} mm {:.3f} deg, map {}",
-        found->overlap, found->paired, 1e3 * found->rmse_m, found->unobserved, found->iterations,
-        1e3 * distance_m(found->T_map_sensor, guess.T_map_sensor),
-        degrees(angle_between_rad(found->T_map_sensor, guess.T_map_sensor)), 1e3 * guess.sd_m(),
-        degrees(guess.sd_rad()), map_.size());
-  if (found && believable(*found, guess, image)) {
+  const MatchCheck check(map_, image, guess, options_);
+  if (auto near = match_near(frame, guess, check, image.stamp_ns)) {
     step.method = options_.method == LocalMethod::inertial ? "inertial" : "icp";
-    return *found;
+    step.doubtful = check.doubtful(*near);
+    return near;
   }
   // The inertial method does without features, as the paper's does.
   if (options_.method == LocalMethod::inertial || image.stamp_ns - recovered_ns_ < options_.recover_ns)
@@ -75,7 +66,7 @@ std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vec
     const double turned = angle_between_rad(candidate.T_map_sensor, guess.T_map_sensor);
     if (options_.T_imu_sensor && turned > kGyroTrustRad) continue;
     if (distance_m(candidate.T_map_sensor, guess.T_map_sensor) > reach_m) continue;
-    if (!consistent(candidate, image)) continue;
+    if (!check.consistent(candidate)) continue;
     step.method = "ransac";
     return candidate;
   }
@@ -91,14 +82,19 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
   step.observed.head<3>() = (R.transpose() * match.observed.topLeftCorner<3, 3>() * R).diagonal();
   step.observed.tail<3>() = (R.transpose() * match.observed.bottomRightCorner<3, 3>() * R).diagonal();
   const Matrix6d covariance = match.information.inverse();
-  step.sd_rad = std::sqrt(covariance.diagonal().head<3>().maxCoeff());
-  step.sd_m = std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
-  step.jumped =
-      from.anchored_ns != from.from_ns && distance_m(match.T_map_sensor, guess.T_map_sensor) > options_.jump_m;
+  const bool guessed = from.anchored_ns != from.from_ns || largest_sd_m(covariance_) > kGuessedSdM;
+  step.jumped = guessed && distance_m(match.T_map_sensor, guess.T_map_sensor) > options_.jump_m;
   unmatched_ns_ = 0;
   anchored_ns_ = from.to_ns;
-  if (step.method == "ransac") return motion_.relocated(match.T_map_sensor);
-  motion_.learn(from, guess, {match.T_map_sensor, covariance});
+  const bool found = step.method == "ransac";
+  if (found)
+    motion_.relocated({match.T_map_sensor, covariance});
+  else
+    motion_.learn(from, guess, {match.T_map_sensor, covariance});
+  // A wrong step is not taken back, and who follows somebody errs the same way again.
+  if (step.doubtful) slipped_ += guess.covariance.diagonal().cwiseSqrt();
+  tell_doubt(step);
+  if (found) return;
   if (motion_.filter()) step.strain = motion_.filter()->strain();
   if (imu == nullptr || from.anchored_ns != from.from_ns) return;
   const Eigen::Matrix3d& R_imu_sensor = options_.T_imu_sensor->linear();
@@ -109,8 +105,7 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
 void Odometry::reckon(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step) {
   step.method = "inertial";
   step.T_odom_sensor = guess.T_map_sensor;
-  step.sd_rad = guess.sd_rad();
-  step.sd_m = guess.sd_m();
+  tell_doubt(step);
   anchored_ns_ = stamp_ns;
 }
 
@@ -118,8 +113,7 @@ void Odometry::coast(const MotionGuess& guess, const FrameStep& from, bool usabl
   step.method = "guess";
   step.converged = false;
   step.T_odom_sensor = guess.T_map_sensor;
-  step.sd_rad = guess.sd_rad();
-  step.sd_m = guess.sd_m();
+  tell_doubt(step);
   const StampNs blind = from.to_ns - from.anchored_ns;
   const StampNs longest = options_.T_imu_sensor ? options_.coast_ns : options_.coast_ns / 2;
   if (blind > longest)
@@ -131,11 +125,20 @@ void Odometry::coast(const MotionGuess& guess, const FrameStep& from, bool usabl
   if (blind > longest && from.to_ns - unmatched_ns_ >= options_.give_up_ns) start_segment(from.to_ns);
 }
 
+void Odometry::tell_doubt(OdometryStep& step) {
+  covariance_ = motion_.covariance();
+  const Vector6d variances = kLastingDoubt * (marked_ + covariance_).diagonal() + slipped_.cwiseAbs2();
+  step.sd_rad = std::sqrt(variances.head<3>().maxCoeff());
+  step.sd_m = std::sqrt(variances.tail<3>().maxCoeff());
+}
+
 void Odometry::start_segment(StampNs stamp_ns) {
   log::warning("odometry lost for {:.1f} s: a new segment starts", to_seconds(stamp_ns - anchored_ns_));
   map_.clear();
   ++segment_;
-  motion_.halt();
+  motion_.restart();
+  covariance_.setZero();
+  marked_.setZero();
 }
 
 void Odometry::remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor) {

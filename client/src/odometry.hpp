@@ -6,6 +6,8 @@
 
 namespace liloc {
 
+class MatchCheck;
+
 struct OdometryOptions {
   LocalMethod method = LocalMethod::cloud;
   Camera camera;  ///< of the images given to `step`
@@ -31,6 +33,7 @@ struct OdometryStep {
   Pose T_odom_sensor = Pose::Identity();
   std::string method;     ///< "first", "icp", "ransac", "inertial", "guess"
   bool converged = true;  ///< the pose was measured
+  bool doubtful = false;  ///< but may follow somebody who walks, or be one place of several
   bool jumped = false;    ///< and sight, after a stretch without, corrected what had been guessed
   std::uint32_t segment = 0;
   double overlap = 0;     ///< of the match; 0 for a guess
@@ -39,7 +42,7 @@ struct OdometryStep {
   /// pose follows the guess) .. 1; ScanMatch::observed.
   Vector6d observed = Vector6d::Zero();
   double strain = 0;            ///< between IMU and registration (InertialFilter::strain); 0 without
-  double sd_rad = 0, sd_m = 0;  ///< of the motion since the previous frame
+  double sd_rad = 0, sd_m = 0;  ///< of the motion since the last `mark`, along the axis that is known least
 };
 
 /// Local registration: each frame against the map of the device's surroundings, from a guess by the IMU or by
@@ -53,15 +56,15 @@ class Odometry {
   [[nodiscard]] OdometryStep step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,
                                   ImuTrack* imu);
   [[nodiscard]] const LocalMap& map() const { return map_; }
+  /// The uncertainty of the motion is counted from the last step on.
+  void mark() {
+    marked_ = covariance_;
+    slipped_.setZero();
+  }
 
  private:
-  /// Whether the guess and the overlap speak for a match.
-  [[nodiscard]] bool believable(const ScanMatch& match, const MotionGuess& guess,
-                                const DepthImage& image) const;
-  /// The same where there is no guess: the image must not look through what the map holds.
-  [[nodiscard]] bool consistent(const ScanMatch& match, const DepthImage& image) const;
-  /// Whether most of what the map holds in view is seen: what peeps out beside somebody fits in many places.
-  [[nodiscard]] bool unhidden(const ScanMatch& match, const DepthImage& image) const;
+  [[nodiscard]] std::optional<ScanMatch> match_near(const std::vector<Surfel>& frame, const MotionGuess& guess,
+                                                    const MatchCheck& check, StampNs stamp_ns) const;
   /// From the guess, and by features where that fails.
   [[nodiscard]] std::optional<ScanMatch> match(const DepthImage& image, const std::vector<Surfel>& frame,
                                                const MotionGuess& guess, OdometryStep& step);
@@ -71,6 +74,7 @@ class Odometry {
   void reckon(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step);
   void coast(const MotionGuess& guess, const FrameStep& from, bool usable, OdometryStep& step);
   void start_segment(StampNs stamp_ns);
+  void tell_doubt(OdometryStep& step);
   void remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor);
 
   OdometryOptions options_;
@@ -83,6 +87,8 @@ class Odometry {
   StampNs keyframe_ns_ = 0;
   StampNs recovered_ns_ = 0;  ///< of the last attempt by features
   Pose T_odom_last_ = Pose::Identity(), T_odom_keyframe_ = Pose::Identity();
+  Matrix6d covariance_ = Matrix6d::Zero(), marked_ = Matrix6d::Zero();  ///< of the last step, and at the mark
+  Vector6d slipped_ = Vector6d::Zero();  ///< deviations that doubtful steps since then may have left for good
 };
 
 }  // namespace liloc

@@ -40,12 +40,8 @@ Cloud every_nth(const Cloud& cloud, std::size_t most) {
 
 /// Best first: by overlap, less what the guess says against the match.
 void sort_by_merit(std::vector<ScanMatch>& matches, const MotionGuess& guess) {
-  const Matrix6d certainty = guess.covariance.inverse();
   const auto merit = [&](const ScanMatch& match) {
-    Vector6d off;
-    off.head<3>() = so3_log(match.T_map_sensor.linear() * guess.T_map_sensor.linear().transpose());
-    off.tail<3>() = match.T_map_sensor.translation() - guess.T_map_sensor.translation();
-    return match.overlap - kPriorWeight * off.dot(certainty * off);
+    return match.overlap - kPriorWeight * guess.surprise_of(match.T_map_sensor);
   };
   std::ranges::stable_sort(matches, std::greater{}, merit);
 }

@@ -15,7 +15,7 @@ constexpr std::size_t kLpcPoints = 4000;      // 6 to 7 kB at 0.05 m
 constexpr StampNs kSubmapAge = from_ms(10'000);  // since a surface was seen; odometry drifts by millimetres
 constexpr std::size_t kSubmapPoints = 2000;      // about 3 kB at 0.05 m
 constexpr std::size_t kFewestSubmapPoints = 60;  // fewer tell nothing
-constexpr double kOdomSdM = 0.01, kOdomSdRad = 0.005, kOdomSdShare = 0.01;  // floor, and share of path and turn
+constexpr double kOdomSdM = 0.002, kOdomSdRad = 0.001, kOdomSdShare = 0.005;  // clocks; scale of path and turn
 
 /// Finer voxels of the same surfaces are more: with fewer points they would hang in the air.
 std::size_t points_at(double voxel_size_m, std::size_t at_5_cm) {
@@ -65,8 +65,8 @@ Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap
   r.stamp_ns = path_.back().stamp_ns;
   r.odom_segment = last_.segment;
   r.T_odom_sensor = last_.T_odom_sensor;
-  r.odom_sd_rad = std::hypot(kOdomSdRad + kOdomSdShare * turned_rad_, last_.sd_rad);
-  r.odom_sd_m = std::hypot(kOdomSdM + kOdomSdShare * path_m_, last_.sd_m);
+  r.odom_sd_rad = std::hypot(kOdomSdRad, kOdomSdShare * turned_rad_, last_.sd_rad);
+  r.odom_sd_m = std::hypot(kOdomSdM, kOdomSdShare * path_m_, last_.sd_m);
   r.local_poses = std::exchange(path_, {});
   r.lpc = std::move(*lpc);
   r.voxel_size_m = options_.voxel_size_m;

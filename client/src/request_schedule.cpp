@@ -20,15 +20,19 @@ RequestSchedule::RequestSchedule(RequestScheduleOptions options) : options_(opti
   if (options_.searching_interval_ns <= 0) options_.searching_interval_ns = options_.interval_ns / 4;
 }
 
-bool RequestSchedule::due(StampNs stamp_ns, bool informative) {
+bool RequestSchedule::due(StampNs stamp_ns, bool informative, bool sure) {
+  if (!sure) after_doubt_ = true;
   if (!informative) {
     after_gap_ = true;
     return false;
   }
   const bool interval_over = !last_ns_ || stamp_ns - *last_ns_ >= options_.interval_ns - kSlack;
   const bool hurried = !located_ && hurried_ns_ && stamp_ns >= *hurried_ns_ - kSlack;
-  if (!interval_over && !after_gap_ && !hurried) return false;
+  const bool sure_again =
+      sure && after_doubt_ && last_ns_ && stamp_ns - *last_ns_ >= options_.searching_interval_ns - kSlack;
+  if (!interval_over && !after_gap_ && !hurried && !sure_again) return false;
   after_gap_ = false;
+  if (sure) after_doubt_ = false;
   hurried_ns_.reset();
   if (last_ns_) gap_ns_ = stamp_ns - *last_ns_;
   last_ns_ = stamp_ns;

@@ -25,8 +25,9 @@ class RequestSchedule {
  public:
   explicit RequestSchedule(RequestScheduleOptions options);
 
-  /// To be called once per frame; true when this frame is to be sent.
-  [[nodiscard]] bool due(StampNs stamp_ns, bool informative);
+  /// To be called once per frame; true when this frame is to be sent. After frames whose place is not `sure`
+  /// the next that is asks at once, but for the lower bound.
+  [[nodiscard]] bool due(StampNs stamp_ns, bool informative, bool sure = true);
   /// A request left / was answered, as of the newest frame's stamp.
   void sent(std::uint64_t seq, StampNs stamp_ns);
   void answered(const SpotReply& reply, StampNs now_ns);
@@ -49,7 +50,7 @@ class RequestSchedule {
   std::optional<StampNs> hurried_ns_;          ///< from here on a request is due before the interval is over
   std::optional<StampNs> searching_since_ns_;  ///< stamp of the first request of this search
   StampNs gap_ns_ = 0;                         ///< between the last two requests
-  bool after_gap_ = false, located_ = false;
+  bool after_gap_ = false, after_doubt_ = false, located_ = false;
   std::vector<Pending> pending_;
 };
 

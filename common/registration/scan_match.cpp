@@ -189,6 +189,13 @@ double MotionGuess::sd_m() const {
   return std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
 }
 
+double MotionGuess::surprise_of(const Pose& T_map_sensor_other) const {
+  Vector6d off;
+  off.head<3>() = so3_log(T_map_sensor_other.linear() * T_map_sensor.linear().transpose());
+  off.tail<3>() = T_map_sensor_other.translation() - T_map_sensor.translation();
+  return off.dot(covariance.ldlt().solve(off));
+}
+
 Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
                              StampNs now_ns, const ScanMatchOptions& options) {
   if (map.size() == 0) return fail("scan match: the local map is empty; insert a first frame");

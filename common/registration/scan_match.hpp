@@ -21,6 +21,8 @@ struct MotionGuess {
   /// Of the axis that is known least.
   [[nodiscard]] double sd_rad() const;
   [[nodiscard]] double sd_m() const;
+  /// Squared distance of a pose from the guess over its covariance: 6 on average where that is right.
+  [[nodiscard]] double surprise_of(const Pose& T_map_sensor_other) const;
 };
 
 struct ScanMatchOptions {

@@ -82,6 +82,7 @@ Result<DriftRun> run_drift(const DeviceRecording& device, const DriftOptions& op
   DriftRun run;
   const auto joules_before = package_joules();
   std::size_t next_imu = 0;
+  std::optional<std::size_t> last_request;  ///< its frame
   for (std::size_t i = 0; i < device.depth.size(); i += static_cast<std::size_t>(options.every)) {
     const auto image = read_depth(device.depth[i], device.info.camera);
     if (!image) return tl::unexpected(image.error());
@@ -97,6 +98,13 @@ Result<DriftRun> run_drift(const DeviceRecording& device, const DriftOptions& op
     run.truth.push_back((*truth)[i].T_map_sensor);
     if (std::string now = engine.problem(); !now.empty()) run.problem = std::move(now);
     if (const auto request = engine.take_request()) {
+      if (last_request && run.frames[*last_request].odom_segment == request->odom_segment) {
+        const Pose E = run.error(*last_request, run.frames.size() - 1);
+        ++run.motions;
+        run.motions_within += E.translation().norm() <= 3 * request->odom_sd_m &&
+                              rotation_angle_rad(E) <= 3 * request->odom_sd_rad;
+      }
+      last_request = run.frames.size() - 1;
       ++run.requests;
       run.lpc_bytes += request->lpc.bytes.size();
       run.extra_bytes += request->extra.bytes.size();
@@ -147,7 +155,7 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
       "{:.2f} deg  pairs {:.3f} (median {:.1f} mm, jump "
       "{:.0f} mm)  "
       "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B  "
-      "around {} B  residual {:.1f} mm  {:.1f} ms of CPU per second{}{}\n",
+      "around {} B  residual {:.1f} mm  {:.1f} ms of CPU per second  {}/{} motions within 3 sd{}{}\n",
       name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
       degrees(rotation_angle_rad(end)), 1e3 * spread.trajectory_m, 1e3 * spread.second_median_m,
       1e3 * spread.second_p90_m, degrees(spread.second_median_rad), good / static_cast<double>(f.size() - 1),
@@ -155,7 +163,7 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
       dull, f.back().odom_segment + 1, run.worst_up_deg,
       run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)),
       run.extra_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
-      1e3 * run.cpu_s / seconds,
+      1e3 * run.cpu_s / seconds, run.motions_within, run.motions,
       run.package_j ? fmt::format("  {:.2f} J per second, reading of files included", *run.package_j / seconds)
                     : "",
       run.problem.empty() ? "" : "  complaint: " + run.problem);

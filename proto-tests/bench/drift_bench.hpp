@@ -19,8 +19,9 @@ struct DriftOptions {
 
 struct DriftRun {
   std::vector<FrameResult> frames;
-  std::vector<Pose> truth;  ///< T_map_sensor of each
-  int requests = 0;
+  std::vector<Pose> truth;        ///< T_map_sensor of each
+  int requests = 0, motions = 0;  ///< between requests of one segment ...
+  int motions_within = 0;         ///< ... that err by less than three of the deviations that the request tells
   double worst_up_deg = -1;
   std::string problem;  ///< the last that the engine complained of
   std::size_t lpc_bytes = 0, extra_bytes = 0;

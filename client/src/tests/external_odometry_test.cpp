@@ -103,7 +103,7 @@ TEST(ExternalOdometry, TheCovariancesGrowthIsTheMotionsError) {
   for (int i = 0; i <= 10; ++i)
     ASSERT_TRUE(odometry.add({at(0.1 * i), Pose::Identity(), Matrix6d(1e-4 * i * Matrix6d::Identity())}));
   static_cast<void>(odometry.step(at(0.2)));
-  odometry.anchor();
+  odometry.mark();
   EXPECT_NEAR(odometry.step(at(1.0)).sd_m, std::sqrt(8e-4), 1e-9);
 }
 

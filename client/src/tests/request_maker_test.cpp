@@ -60,10 +60,21 @@ TEST_F(Requests, AreLessSureTheFartherTheDeviceWent) {
   travel(42, 43);
   const SpotRequest again = make();
   EXPECT_LT(here.odom_sd_m, near.odom_sd_m);
-  EXPECT_NEAR(near.odom_sd_m - here.odom_sd_m, 0.01 * 0.1, 1e-9);
-  EXPECT_NEAR(far.odom_sd_m - here.odom_sd_m, 0.01 * 4, 1e-9);
-  EXPECT_NEAR(far.odom_sd_rad - here.odom_sd_rad, 0.01 * 0.8, 1e-9);
+  // A wrong scale errs by a share of the path and of the turn.
+  EXPECT_NEAR(near.odom_sd_m, std::hypot(here.odom_sd_m, 0.005 * 0.1), 1e-9);
+  EXPECT_NEAR(far.odom_sd_m, std::hypot(here.odom_sd_m, 0.005 * 4), 1e-9);
+  EXPECT_NEAR(far.odom_sd_rad, std::hypot(here.odom_sd_rad, 0.005 * 0.8), 1e-9);
   EXPECT_NEAR(again.odom_sd_m, near.odom_sd_m, 1e-12);
+}
+
+TEST_F(Requests, TellWhatTheOdometryDoubts) {
+  OdometryStep step = step_of(0);
+  step.sd_m = 0.3;
+  step.sd_rad = 0.05;
+  maker.travelled(stamp_of(0), step, true);
+  const SpotRequest request = make();
+  EXPECT_NEAR(request.odom_sd_m, 0.3, 1e-3);
+  EXPECT_NEAR(request.odom_sd_rad, 0.05, 1e-3);
 }
 
 TEST_F(Requests, SayNothingOfASegmentThatBroke) {

@@ -68,6 +68,21 @@ TEST(RequestSchedule, AtOnceAfterADullStretchAndNeverWithinOne) {
   EXPECT_THAT(due_at({7, 8, 9, 10}, 20), ElementsAre(0, 1100, 1900));
 }
 
+TEST(RequestSchedule, AtOnceWhenThePlaceIsSureAgainButForTheLowerBound) {
+  const auto due_with_doubt = [](int first_ms, int last_ms) {
+    RequestSchedule schedule(kOptions);
+    std::vector<int> due;
+    for (int ms = 0; ms <= 1600; ms += 100)
+      if (schedule.due(from_ms(ms), true, ms < first_ms || ms > last_ms)) due.push_back(ms);
+    return due;
+  };
+  EXPECT_THAT(due_with_doubt(9000, 9000), ElementsAre(0, 800, 1600));
+  EXPECT_THAT(due_with_doubt(300, 400), ElementsAre(0, 500, 1300));
+  EXPECT_THAT(due_with_doubt(100, 100), ElementsAre(0, 200, 1000));
+  EXPECT_THAT(due_with_doubt(800, 800), ElementsAre(0, 800, 1000));   // 900 would be too soon
+  EXPECT_THAT(due_with_doubt(100, 1200), ElementsAre(0, 800, 1300));  // as usual meanwhile
+}
+
 TEST(RequestSchedule, RoundedStampsDoNotMissTheInterval) {
   RequestSchedule schedule(kOptions);
   EXPECT_TRUE(schedule.due(1'000'000'256, true));

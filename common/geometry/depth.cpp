@@ -6,6 +6,9 @@
 namespace liloc {
 namespace {
 
+constexpr double kNearest_m = 1e-3;  // of what a camera may see
+constexpr double kNoReturn = 65535;  // some cameras mark a missing return by it
+
 /// True when no neighbour along `step` supports the pixel; `lo`/`hi` say whether that neighbour exists.
 bool unsupported(const std::uint16_t* pixel, std::ptrdiff_t step, bool lo, bool hi, int tolerance) {
   const int depth = *pixel;
@@ -49,6 +52,29 @@ Result<Cloud> depth_to_cloud(const DepthImage& image, const Camera& camera, cons
     }
   }
   return cloud;
+}
+
+std::optional<Eigen::Vector2i> pixel_of(const Camera& camera, const Eigen::Vector3f& p_sensor) {
+  const Eigen::Vector3d p = p_sensor.cast<double>();
+  if (!p.allFinite() || p.z() <= kNearest_m) return std::nullopt;
+  const double u = camera.fx * p.x() / p.z() + camera.cx + 0.5, v = camera.fy * p.y() / p.z() + camera.cy + 0.5;
+  if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return std::nullopt;
+  return Eigen::Vector2i(static_cast<int>(u), static_cast<int>(v));
+}
+
+DepthImage cloud_to_depth(const Cloud& cloud_sensor, const Camera& camera, StampNs stamp_ns) {
+  const auto width = static_cast<std::size_t>(camera.width), height = static_cast<std::size_t>(camera.height);
+  DepthImage image{stamp_ns, camera.width, camera.height, std::vector<std::uint16_t>(width * height, 0)};
+  for (const Eigen::Vector3f& p : cloud_sensor.points) {
+    const auto pixel = pixel_of(camera, p);
+    if (!pixel) continue;
+    const double units = static_cast<double>(p.z()) / camera.depth_scale_m + 0.5;
+    if (units < 1 || units >= kNoReturn) continue;
+    std::uint16_t& held =
+        image.units[static_cast<std::size_t>(pixel->y()) * width + static_cast<std::size_t>(pixel->x())];
+    if (held == 0 || units < held) held = static_cast<std::uint16_t>(units);
+  }
+  return image;
 }
 
 }  // namespace liloc

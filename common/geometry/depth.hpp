@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "common/geometry/camera.hpp"
 #include "common/geometry/cloud.hpp"
 
@@ -15,5 +17,13 @@ struct DepthOptions {
 /// Errors: the image's size differs from the camera's, or its data from its size.
 [[nodiscard]] Result<Cloud> depth_to_cloud(const DepthImage& image, const Camera& camera,
                                            const DepthOptions& options = {});
+
+/// The pixel {u, v} that a point in the sensor frame falls on; none outside the image, behind it, or if the
+/// point is not finite.
+[[nodiscard]] std::optional<Eigen::Vector2i> pixel_of(const Camera& camera, const Eigen::Vector3f& p_sensor);
+
+/// What a camera at the sensor's place would measure of a cloud: the nearest point of each pixel. What cannot
+/// be said in its units is left out.
+[[nodiscard]] DepthImage cloud_to_depth(const Cloud& cloud_sensor, const Camera& camera, StampNs stamp_ns);
 
 }  // namespace liloc

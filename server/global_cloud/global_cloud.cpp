@@ -1,7 +1,6 @@
 #include "server/global_cloud/global_cloud.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace liloc {
 namespace {
@@ -13,23 +12,6 @@ constexpr int kRoomsDescribedAhead = 16;  // once one was asked for; a crowded r
 
 StampNs gap(StampNs a, StampNs b) {
   return a > b ? a - b : b - a;
-}
-
-/// Renders points into the LiDAR's own camera; the nearest point of a pixel wins.
-DepthImage rendered(const Camera& camera, StampNs stamp_ns, const Cloud& cloud_sensor) {
-  DepthImage image{stamp_ns, camera.width, camera.height, {}};
-  image.units.assign(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), 0);
-  for (const auto& p : cloud_sensor.points) {
-    if (!p.allFinite() || p.z() <= 0) continue;
-    const double u = p.x() / p.z() * camera.fx + camera.cx + 0.5,
-                 v = p.y() / p.z() * camera.fy + camera.cy + 0.5;
-    const double units = p.z() / camera.depth_scale_m + 0.5;
-    if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height && units >= 1 && units < 65535)) continue;
-    std::uint16_t& held = image.units[static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) +
-                                      static_cast<std::size_t>(u)];
-    if (held == 0 || units < held) held = static_cast<std::uint16_t>(units);
-  }
-  return image;
 }
 
 }  // namespace
@@ -125,7 +107,7 @@ std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame
 Status GlobalCloud::add_points(std::size_t lidar, StampNs stamp_ns, const Cloud& cloud_sensor) {
   if (lidar >= site_.global_lidars.size())
     return fail("LiDAR {} of {} does not exist", lidar, site_.global_lidars.size());
-  return add_depth(lidar, rendered(site_.global_lidars[lidar].camera, stamp_ns, cloud_sensor));
+  return add_depth(lidar, cloud_to_depth(cloud_sensor, site_.global_lidars[lidar].camera, stamp_ns));
 }
 
 GlobalCloud::Frame GlobalCloud::nearest_frame(std::size_t lidar, StampNs stamp_ns) const {

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 namespace liloc {
 namespace {
 
@@ -25,6 +27,21 @@ TEST(Depth, PointsLieOnThePlaneThatWasSeen) {
   ASSERT_TRUE(cloud);
   EXPECT_EQ(cloud->size(), 64U * 48U);
   for (const auto& p : cloud->points) EXPECT_NEAR(normal.dot(p.cast<double>()), 2.0, 1e-3);
+}
+
+TEST(Depth, TheImageOfACloudIsTheImageItCameFrom) {
+  const DepthImage image = plane_image(Eigen::Vector3d(0.2, -0.3, 1.0).normalized(), 2.0);
+  const DepthImage back = cloud_to_depth(*depth_to_cloud(image, kCamera), kCamera, 7);
+  EXPECT_EQ(back.units, image.units);
+  EXPECT_EQ(back.stamp_ns, 7);
+}
+
+TEST(Depth, TheNearestPointOfAPixelIsSeenAndWhatNoPixelHoldsIsNot) {
+  const Cloud cloud{
+      {{0, 0, 2}, {0, 0, 1.5F}, {0, 0, 1.7F}, {0, 0, -1}, {3, 0, 1}, {0, 0, 70}, {NAN, 0, 1}, {0, 0, 0}}, {}};
+  const DepthImage image = cloud_to_depth(cloud, kCamera, 1);
+  EXPECT_EQ(image.at(32, 24), 1500);
+  EXPECT_EQ(std::ranges::count(image.units, 0), 64 * 48 - 1);
 }
 
 TEST(Depth, RangeLimitsAndNoReturnAreDropped) {

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 namespace liloc {
 
@@ -22,16 +22,25 @@ const ScoreField::Probes& Climber::turned(double yaw_rad) {
   return probes;
 }
 
-int Climber::score(const Eigen::Vector4d& pose, std::size_t points) {
+int Climber::score(const Eigen::Vector4d& pose, std::size_t points, int least) {
   const ScoreField::Probes& probes = turned(pose[3]);
   const Eigen::Vector3f t = pose.head<3>().cast<float>();
   const std::span<std::int32_t> worths(worths_.data(), std::min(points, level_.size()));
   field_.look_up(probes, t, worths);
-  if (movers_ != nullptr)
-    for (std::size_t i = 0; i < worths.size(); ++i)
-      if (worths[i] < 0 && movers_->at(Eigen::Vector3f(probes.x[i], probes.y[i], probes.z[i]) + t))
-        worths[i] = 0;
-  return std::accumulate(worths.begin(), worths.end(), 0);
+  int sum = 0, most = 0;
+  for (const std::int32_t worth : worths) {
+    sum += worth;
+    most += worth > 0 ? worth : 0;
+  }
+  if (movers_ == nullptr || most <= least) return sum;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < worths.size(); ++i) {
+    against_[count] = static_cast<std::uint32_t>(i);
+    count += worths[i] < 0 ? 1 : 0;
+  }
+  for (const std::uint32_t i : std::span(against_.data(), count))
+    if (movers_->at(Eigen::Vector3f(probes.x[i], probes.y[i], probes.z[i]) + t)) sum -= worths[i];
+  return sum;
 }
 
 bool Climber::improve(double shift_m, double turn_rad, std::size_t points, LevelPose* best) {
@@ -40,7 +49,7 @@ bool Climber::improve(double shift_m, double turn_rad, std::size_t points, Level
     for (const double sign : {1.0, -1.0}) {
       LevelPose next = *best;
       next.pose[axis] += sign * (axis == 3 ? turn_rad : shift_m);
-      next.score = score(next.pose, points);
+      next.score = score(next.pose, points, best->score);
       if (next.score <= best->score) continue;
       *best = next;
       improved = true;
@@ -50,7 +59,7 @@ bool Climber::improve(double shift_m, double turn_rad, std::size_t points, Level
 }
 
 LevelPose Climber::climb(const Eigen::Vector4d& from, const Steps& steps) {
-  LevelPose best{from, score(from, steps.points)};
+  LevelPose best{from, score(from, steps.points, std::numeric_limits<int>::min())};
   double shift_m = steps.shift_m, turn_rad = steps.turn_rad;
   for (int halving = 0; halving <= steps.halvings; ++halving, shift_m /= 2, turn_rad /= 2)
     for (int round = 0; round < steps.rounds && improve(shift_m, turn_rad, steps.points, &best); ++round) {

@@ -19,7 +19,12 @@ class Climber {
  public:
   /// Points about the device and their normals, turned into the map's axes at yaw 0.
   Climber(const ScoreField& field, const Vicinity* movers, const Eigen::Vector3d& up_map, const Cloud& level)
-      : field_(field), movers_(movers), up_map_(up_map), level_(level), worths_(level.size()) {}
+      : field_(field),
+        movers_(movers),
+        up_map_(up_map),
+        level_(level),
+        worths_(level.size()),
+        against_(level.size()) {}
 
   struct Steps {
     double shift_m = 0.1, turn_rad = 0.0436;  ///< at first
@@ -30,7 +35,8 @@ class Climber {
 
  private:
   [[nodiscard]] const ScoreField::Probes& turned(double yaw_rad);
-  [[nodiscard]] int score(const Eigen::Vector4d& pose, std::size_t points);
+  /// Exact where it exceeds `least`; else any value up to that.
+  [[nodiscard]] int score(const Eigen::Vector4d& pose, std::size_t points, int least);
   bool improve(double shift_m, double turn_rad, std::size_t points, LevelPose* best);
 
   const ScoreField& field_;
@@ -39,6 +45,7 @@ class Climber {
   const Cloud& level_;
   std::unordered_map<long, ScoreField::Probes> turned_;  ///< by yaw in microradians
   std::vector<std::int32_t> worths_;
+  std::vector<std::uint32_t> against_;  ///< points that count against a pose
 };
 
 }  // namespace liloc

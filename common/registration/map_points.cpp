@@ -7,7 +7,7 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kRun = 32;
+constexpr std::size_t kRun = 32, kRunsAtOnce = 256;
 constexpr float kRounding_m = 1e-3F;
 
 using PointIter = std::vector<Eigen::Vector3f>::iterator;
@@ -33,9 +33,9 @@ void bring_together(PointIter first, PointIter last) {
 
 }  // namespace
 
-MapPoints::Runs::Runs(std::vector<Eigen::Vector3f> given)
+MapPoints::Runs::Runs(std::vector<Eigen::Vector3f> given, MapOrder order)
     : count(given.size()), points(count), centres((count + kRun - 1) / kRun) {
-  bring_together(given.begin(), given.end());
+  if (order == MapOrder::together) bring_together(given.begin(), given.end());
   for (std::size_t i = 0; i < count; ++i) points.set(i, given[i]);
   for (std::size_t begin = 0; begin < count; begin += kRun) {
     const auto first = given.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -48,33 +48,40 @@ MapPoints::Runs::Runs(std::vector<Eigen::Vector3f> given)
   }
 }
 
-std::array<MapPoints::Runs, 2> MapPoints::every_other(const std::vector<Eigen::Vector3f>& points) {
+std::array<MapPoints::Runs, 2> MapPoints::every_other(const std::vector<Eigen::Vector3f>& points,
+                                                      MapOrder order) {
   std::array<std::vector<Eigen::Vector3f>, 2> parts;
   for (std::size_t i = 0; i < points.size(); ++i) parts[i % 2].push_back(points[i]);
-  return {Runs(std::move(parts[0])), Runs(std::move(parts[1]))};
+  return {Runs(std::move(parts[0]), order), Runs(std::move(parts[1]), order)};
 }
 
-MapPoints::MapPoints(const std::vector<Eigen::Vector3f>& sound, const std::vector<Eigen::Vector3f>& stale)
-    : sound_(every_other(sound)), stale_(every_other(stale)) {}
+MapPoints::MapPoints(const std::vector<Eigen::Vector3f>& sound, const std::vector<Eigen::Vector3f>& stale,
+                     MapOrder order)
+    : sound_(every_other(sound, order)), stale_(every_other(stale, order)) {}
 
 SightView::Tally MapPoints::tally(const Runs& runs, const SightView& view,
                                   const Eigen::Isometry3f& T_sensor_map, float tolerance_m) {
   const std::array<HalfSpace, 6> bounds = view.bounds(T_sensor_map, tolerance_m);
-  const std::size_t count = runs.radii.size();
-  std::vector<std::int32_t> in_view(count, 1);
-  reach_into(bounds.data(), bounds.size(), runs.centres.run(0, count), runs.radii.data(), in_view.data());
-  SightView::Tally tally;
-  for (std::size_t begin = 0, end = 0; begin < count; begin = end + 1) {
-    end = static_cast<std::size_t>(
-        std::find(in_view.begin() + static_cast<std::ptrdiff_t>(begin), in_view.end(), 0) - in_view.begin());
-    if (end == begin) continue;
-    const std::size_t last = std::min(end * kRun, runs.count);
-    const SightView::Tally more =
-        view.tally(runs.points.run(begin * kRun, last - begin * kRun), T_sensor_map, tolerance_m);
-    tally.agree += more.agree;
-    tally.conflict += more.conflict;
+  SightView::Tally sum;
+  const auto add = [&](std::size_t first_run, std::size_t end_run) {
+    const std::size_t begin = first_run * kRun, end = std::min(end_run * kRun, runs.count);
+    const SightView::Tally more = view.tally(runs.points.run(begin, end - begin), T_sensor_map, tolerance_m);
+    sum.agree += more.agree;
+    sum.conflict += more.conflict;
+  };
+  std::array<std::int32_t, kRunsAtOnce> in_view;
+  for (std::size_t begin = 0; begin < runs.radii.size(); begin += kRunsAtOnce) {
+    const std::size_t here = std::min(kRunsAtOnce, runs.radii.size() - begin);
+    std::fill_n(in_view.begin(), here, 1);
+    reach_into(bounds.data(), bounds.size(), runs.centres.run(begin, here), runs.radii.data() + begin,
+               in_view.data());
+    for (std::size_t i = 0; i < here; ++i) {
+      const std::size_t first = i;
+      while (i < here && in_view[i] != 0) ++i;
+      if (i > first) add(begin + first, begin + i);
+    }
   }
-  return tally;
+  return sum;
 }
 
 SightView::Tally MapPoints::seen_by(const SightView& view, const Eigen::Isometry3f& T_sensor_map,

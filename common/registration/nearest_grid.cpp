@@ -4,15 +4,44 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/registration/simd.hpp"
 #include "common/registration/vicinity.hpp"
 
 namespace liloc {
 namespace {
 
 constexpr double kMostBlocks = 1 << 24;  // 67 MB of block table: a larger extent gets larger cells
+constexpr std::size_t kAtOnce = 256;     // points whose cells are found before any is looked up
 constexpr float kSnapCells = 8;          // so that a point at the rim that moves a little moves no cell
 /// While a grid is taken over: a cell whose point is gone; below, who has it for now.
 constexpr std::int32_t kLeft = NearestGrid::kNone - 1;
+
+/// The cells of a grid as a kernel sees them. `outside`: the block of what lies outside.
+struct Shape {
+  float origin[3], extent[3], shift[3], inverse;
+  std::uint32_t blocks_x, blocks_y, outside;
+};
+
+LILOC_WIDE void find_cells(const Shape& shape, const PointRun& points, std::uint32_t* blocks,
+                           std::uint32_t* cells) {
+  const Shape g = shape;
+  const float *x = points.x, *y = points.y, *z = points.z;
+  const std::size_t count = points.count;
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) {
+    const float qx = (x[i] + g.shift[0] - g.origin[0]) * g.inverse,
+                qy = (y[i] + g.shift[1] - g.origin[1]) * g.inverse,
+                qz = (z[i] + g.shift[2] - g.origin[2]) * g.inverse;
+    const bool inside =
+        (qx >= 0) & (qy >= 0) & (qz >= 0) & (qx < g.extent[0]) & (qy < g.extent[1]) & (qz < g.extent[2]);
+    const auto cx = static_cast<std::uint32_t>(static_cast<std::int32_t>(qx)),
+               cy = static_cast<std::uint32_t>(static_cast<std::int32_t>(qy)),
+               cz = static_cast<std::uint32_t>(static_cast<std::int32_t>(qz));
+    const std::uint32_t block = ((cz >> 3) * g.blocks_y + (cy >> 3)) * g.blocks_x + (cx >> 3);
+    blocks[i] = inside ? block : g.outside;
+    cells[i] = (cz & 7) << 6 | (cy & 7) << 3 | (cx & 7);
+  }
+}
 
 }  // namespace
 
@@ -56,7 +85,31 @@ void NearestGrid::lay_out(const std::vector<Eigen::Vector3f>& points, double cel
   const Eigen::Vector3i cells = ((end - origin_.array()) * inverse_).round().cast<int>() + 1;
   extent_ = cells.cast<float>();
   block_count_ = (cells.array() + 7) / 8;
-  blocks_.assign(static_cast<std::size_t>(block_count_.cast<std::int64_t>().prod()), kNone);
+  blocks_.assign(static_cast<std::size_t>(block_count_.cast<std::int64_t>().prod()) + 1, kNone);
+}
+
+void NearestGrid::nearest(const PointRun& points, const Eigen::Vector3f& shift, std::int32_t* indices) const {
+  if (blocks_.empty()) {
+    std::fill_n(indices, points.count, kNone);
+    return;
+  }
+  const Shape shape{{origin_.x(), origin_.y(), origin_.z()},
+                    {extent_.x(), extent_.y(), extent_.z()},
+                    {shift.x(), shift.y(), shift.z()},
+                    inverse_,
+                    static_cast<std::uint32_t>(block_count_.x()),
+                    static_cast<std::uint32_t>(block_count_.y()),
+                    static_cast<std::uint32_t>(blocks_.size()) - 1};
+  std::array<std::uint32_t, kAtOnce> blocks, cells;
+  for (std::size_t begin = 0; begin < points.count; begin += kAtOnce) {
+    const std::size_t here = std::min(kAtOnce, points.count - begin);
+    find_cells(shape, {points.x + begin, points.y + begin, points.z + begin, here}, blocks.data(),
+               cells.data());
+    for (std::size_t i = 0; i < here; ++i) {
+      const std::int32_t block = blocks_[blocks[i]];
+      indices[begin + i] = block == kNone ? kNone : cells_[static_cast<std::size_t>(block)][cells[i]];
+    }
+  }
 }
 
 /// What the grid before held, by the indices of now; what is gone leaves its cells to others. Blocks that held

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/registration/cloud_change.hpp"
+#include "common/registration/vectors.hpp"
 
 namespace liloc {
 
@@ -29,6 +30,8 @@ class NearestGrid {
     const std::int32_t block = blocks_[block_index(cell)];
     return block == kNone ? kNone : cells_[static_cast<std::size_t>(block)][cell_index(cell)];
   }
+  /// The same for many points, each moved by `shift`.
+  void nearest(const PointRun& points, const Eigen::Vector3f& shift, std::int32_t* indices) const;
 
  private:
   using Block = std::array<std::int32_t, 512>;
@@ -54,7 +57,7 @@ class NearestGrid {
   float cell_ = 0, reach_ = 0, inverse_ = 1;
   Eigen::Vector3f origin_ = Eigen::Vector3f::Zero(), extent_ = Eigen::Vector3f::Zero();  ///< extent in cells
   Eigen::Vector3i block_count_ = Eigen::Vector3i::Zero();
-  std::vector<std::int32_t> blocks_;
+  std::vector<std::int32_t> blocks_;  ///< and one more, of what lies outside
   std::vector<Block> cells_;
 };
 

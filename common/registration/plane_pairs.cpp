@@ -86,21 +86,25 @@ PlanePairs::PlanePairs(const Side& side)
       normals_(side.source.size()),
       offsets_(side.source.size()),
       target_normals_(side.source.size()),
+      partners_(side.source.size()),
       rows_(kColumns * arms_.x.size()),
       roots_(arms_.x.size()) {
   std::ranges::fill(offsets_.x, kFar);
 }
 
-void PlanePairs::find(const Eigen::Vector3f& t) {
-  for (std::size_t i = 0; i < side_.source.size(); ++i) {
+/// Partners no farther than the root of `limit`, of points that are not beside somebody.
+void PlanePairs::find(const Eigen::Vector3f& t, float limit) {
+  const std::size_t count = side_.source.size();
+  side_.nearest.nearest(arms_.run(0, count), t, partners_.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    offsets_.set(i, {kFar, 0, 0});
+    if (partners_[i] == NearestGrid::kNone) continue;
+    const auto j = static_cast<std::size_t>(partners_[i]);
     const Eigen::Vector3f p = Eigen::Vector3f(arms_.x[i], arms_.y[i], arms_.z[i]) + t;
-    const std::int32_t j = side_.partner_of(p);
-    if (j == NearestGrid::kNone) {
-      offsets_.set(i, {kFar, 0, 0});
-      continue;
-    }
-    offsets_.set(i, p - side_.target.points[static_cast<std::size_t>(j)]);
-    target_normals_.set(i, side_.target.normals[static_cast<std::size_t>(j)]);
+    const Eigen::Vector3f offset = p - side_.target.points[j];
+    if (offset.squaredNorm() > limit || (side_.movers != nullptr && side_.movers->at(p))) continue;
+    offsets_.set(i, offset);
+    target_normals_.set(i, side_.target.normals[j]);
   }
 }
 
@@ -121,10 +125,10 @@ NormalEquations PlanePairs::at(const Pose& T, double distance_m, double min_norm
   const Eigen::Matrix3f R = Tf.linear();
   turn(R.data(), source_, &arms_);
   turn(R.data(), source_normals_, &normals_);
-  find(Tf.translation());
-  const int pairs =
-      weigh_pairs(arms_, normals_, offsets_, target_normals_, static_cast<float>(distance_m * distance_m),
-                  static_cast<float>(min_normal_agreement), rows_.data(), roots_.data());
+  const auto limit = static_cast<float>(distance_m * distance_m);
+  find(Tf.translation(), limit);
+  const int pairs = weigh_pairs(arms_, normals_, offsets_, target_normals_, limit,
+                                static_cast<float>(min_normal_agreement), rows_.data(), roots_.data());
   NormalEquations equations = sums();
   equations.pairs = pairs;
   return equations;

@@ -23,12 +23,13 @@ class PlanePairs {
   [[nodiscard]] NormalEquations at(const Pose& T, double distance_m, double min_normal_agreement);
 
  private:
-  void find(const Eigen::Vector3f& t);
+  void find(const Eigen::Vector3f& t, float limit);
   [[nodiscard]] NormalEquations sums() const;
 
   const Side side_;
   const Vectors source_, source_normals_;
   Vectors arms_, normals_, offsets_, target_normals_;
+  std::vector<std::int32_t> partners_;
   std::vector<float> rows_;  ///< the Jacobian and the residual by columns, times the root of each pair's weight
   std::vector<float> roots_;
 };

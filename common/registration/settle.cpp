@@ -23,7 +23,7 @@ class Scorer {
       if (!problem.query.view.may_see(T_sensor_map * p, kMargin_m)) continue;
       (target.present && target.present->stale[i] != 0 ? stale : sound).push_back(p);
     }
-    near_.emplace(sound, stale);
+    near_.emplace(sound, stale, MapOrder::as_given);
   }
 
   [[nodiscard]] double operator()(const Pose& T_map_sensor) const {

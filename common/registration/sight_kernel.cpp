@@ -9,7 +9,7 @@ LILOC_WIDE void look_at(const Pinhole& camera, const DepthBand* bands, const Poi
   const Pinhole c = camera;  // a copy, which stores to `words` cannot change: else nothing is vectorized
   const float *x = points.x, *y = points.y, *z = points.z;
   const std::size_t count = points.count;
-  const auto row = static_cast<std::int32_t>(c.width);
+  const auto row = static_cast<std::uint32_t>(c.width), none = static_cast<std::uint32_t>(c.none);
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i) {
     const float px = c.R[0] * x[i] + c.R[3] * y[i] + c.R[6] * z[i] + c.t[0],
@@ -18,8 +18,9 @@ LILOC_WIDE void look_at(const Pinhole& camera, const DepthBand* bands, const Poi
     const float inverse = 1.0F / (pz > c.nearest ? pz : c.nearest);
     const float u = px * inverse * c.fx + c.cx, v = py * inverse * c.fy + c.cy;
     const bool inside = (pz >= c.nearest) & (u >= 0) & (v >= 0) & (u < c.width) & (v < c.height);
-    const std::int32_t inner = static_cast<std::int32_t>(v) * row + static_cast<std::int32_t>(u);
-    const std::int32_t pixel = inside ? inner : c.none;
+    const std::uint32_t inner = static_cast<std::uint32_t>(static_cast<std::int32_t>(v)) * row +
+                                static_cast<std::uint32_t>(static_cast<std::int32_t>(u));
+    const auto pixel = static_cast<std::int32_t>(inside ? inner : none);
     const float near = bands[pixel].near, far = bands[pixel].far;
     const float slack = tolerance_m + 0.01F * pz;
     const bool through = pz < near - 2 * slack;

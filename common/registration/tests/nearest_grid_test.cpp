@@ -28,6 +28,21 @@ TEST_P(NearestGridLaw, IsAsNearAsBruteForceUpToACell) {
   }
 }
 
+TEST_P(NearestGridLaw, OfManyPointsEachGetsItsOwn) {
+  std::mt19937 rng(GetParam());
+  std::uniform_real_distribution<float> unit(-1.5F, 1.5F);
+  std::vector<Eigen::Vector3f> points, asked;
+  for (int i = 0; i < 300; ++i) points.emplace_back(unit(rng), unit(rng), 0.3F * unit(rng));
+  for (int i = 0; i < 1003; ++i) asked.emplace_back(1.3F * unit(rng), 1.3F * unit(rng), unit(rng));
+  asked.emplace_back(1e6F, -1e6F, 0);
+  const Eigen::Vector3f shift(0.1F, -0.2F, 0.05F);
+  for (const NearestGrid& grid : {NearestGrid(points, 0.05, 0.2), NearestGrid({}, 0.05, 0.2)}) {
+    std::vector<std::int32_t> found(asked.size(), 7);
+    grid.nearest(Vectors(asked).run(0, asked.size()), shift, found.data());
+    for (std::size_t i = 0; i < asked.size(); ++i) ASSERT_EQ(found[i], grid.nearest(asked[i] + shift)) << i;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, NearestGridLaw, testing::Range(1U, 5U));
 
 TEST(NearestGrid, EmptyAndHostileInput) {

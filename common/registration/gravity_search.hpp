@@ -12,7 +12,8 @@ struct GravitySearchOptions {
   std::size_t climb_first = 800;   ///< best places of the coarse pass, climbed a little
   std::size_t climb_second = 200;  ///< of those, climbed to the top
   std::size_t propose = 60;        ///< distinct poses returned, best first
-  std::chrono::steady_clock::duration time_limit = std::chrono::seconds(2);
+  std::chrono::steady_clock::duration time_limit =
+      std::chrono::hours(1);  ///< none, or answers would depend on load
   int threads = 1;
   Eigen::Vector3d up_map = Eigen::Vector3d::UnitZ();  ///< unit; other than z where the map is not level
 };

@@ -48,6 +48,7 @@ std::vector<Candidate> GravityProposer::propose(const SpotProblem& problem) cons
   GravitySearchOptions options;
   options.threads = problem.threads;
   options.up_map = up.map;
+  options.time_limit = problem.search_limit;
   return gravity_search(problem.target, problem.query, up.sensor, options);
 }
 

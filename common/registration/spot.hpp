@@ -1,5 +1,6 @@
 #pragma once
 // One spot: propose by whatever is known, judge all candidates alike, refine the best few.
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -36,6 +37,7 @@ struct SpotProblem {
   std::uint64_t seed = 1;
   int threads = 1;
   JudgeOptions judging = {};
+  std::chrono::steady_clock::duration search_limit = GravitySearchOptions{}.time_limit;
 };
 
 /// A way to find candidate poses. Stateless; any thread may call it.

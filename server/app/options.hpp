@@ -13,7 +13,7 @@ struct ServerOptions {
   std::string site_file;
   std::string state_file;  ///< what the server learns of the site; empty: kept in memory alone
   wire::DomainOptions seat;
-  LocalizerOptions localizer;
+  LocalizerOptions localizer{.search_limit = std::chrono::seconds(2)};
   ServiceOptions service;
   log::Level log_level = log::Level::info;
   double status_every_s = 10;  ///< a line in the log; 0: none

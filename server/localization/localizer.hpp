@@ -1,5 +1,6 @@
 #pragma once
 // From a request and the room to an answer: propose, judge, verify. No I/O.
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "common/protocol/spot.hpp"
 #include "common/registration/cell_bounds.hpp"
+#include "common/registration/gravity_search.hpp"
 #include "server/global_cloud/global_cloud.hpp"
 
 namespace liloc {
@@ -33,6 +35,9 @@ struct LocalizerOptions {
   std::uint64_t seed = 1;  ///< all randomness comes from it, the client id and the request's seq
   int threads = 1;         ///< per request
   std::string server_id = "liloc";
+  /// A search of the room may take so long, then what it has counts. Without a limit answers do not depend on
+  /// load.
+  std::chrono::steady_clock::duration search_limit = GravitySearchOptions{}.time_limit;
 
   [[nodiscard]] Verify verify_or_default() const;
   [[nodiscard]] Icp icp_or_default() const;

@@ -85,6 +85,7 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
         return raw->described_;
       },
       options.seed * 7919 + request.seq, options.threads, judge_options_for(options.voxel_size_m)});
+  spot->problem_->search_limit = options.search_limit;
   spot->problem_->judging.refine.point_to_point = options.icp_or_default() == Icp::point;
   return spot;
 }

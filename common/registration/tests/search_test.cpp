@@ -20,6 +20,14 @@ TEST_P(SearchLaw, GravityFindsTheDeviceCold) {
   EXPECT_TRUE(near(found.front().T_map_sensor(), w.T_map_device));
 }
 
+TEST_P(SearchLaw, PastItsTimeTheSearchEndsWithWhatItHas) {
+  const WatchedRoom w = watched_room(GetParam());
+  SpotProblem problem = w.problem();
+  EXPECT_FALSE(GravityProposer().propose(problem).empty());
+  problem.search_limit = std::chrono::seconds(0);
+  EXPECT_TRUE(GravityProposer().propose(problem).empty());
+}
+
 TEST_P(SearchLaw, OneThreadAndTwoFindTheSamePlace) {
   const WatchedRoom w = watched_room(GetParam());
   GravitySearchOptions two;

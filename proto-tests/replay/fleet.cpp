@@ -63,6 +63,8 @@ Status Fleet::stop() {
     for (Child& child : *group) child.ask_to_stop();
     for (Child& child : *group)
       if (auto status = child.stop(); !status && first) first = status;
+    if (group == &clients_)
+      for (const Child& child : clients_) client_usage_.push_back(child.usage());
     group->clear();
   }
   return first;

@@ -37,9 +37,12 @@ class Fleet {
                                   std::string_view what);
   /// Clients first, so that their last traces are written while the server still stands; then the server.
   [[nodiscard]] Status stop();
+  /// Of the clients, in the command's order; empty before `stop`.
+  [[nodiscard]] const std::vector<Child::Usage>& client_usage() const { return client_usage_; }
 
  private:
   std::vector<Child> clients_;
+  std::vector<Child::Usage> client_usage_;
   std::vector<Child> server_;  ///< one, or none once stopped
 };
 

@@ -116,6 +116,11 @@ Result<RunFacts> run_live(const Recording& recording, const ReplayOptions& optio
   if (!stopped) return tl::unexpected(stopped.error());
 
   facts.recorded_s = recorded_seconds(events);
+  for (std::size_t i = 0; i < fleet->client_usage().size(); ++i) {
+    const std::string& id = recording.devices[i].info.id;
+    facts.client_cpu_s[id] = fleet->client_usage()[i].cpu_s;
+    facts.client_peak_mb[id] = fleet->client_usage()[i].peak_mb;
+  }
   return facts;
 }
 

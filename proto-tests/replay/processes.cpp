@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -48,13 +49,15 @@ Child::Child(Child&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       name_(std::move(other.name_)),
       log_file_(std::move(other.log_file_)),
-      wait_status_(other.wait_status_) {}
+      wait_status_(other.wait_status_),
+      usage_(other.usage_) {}
 
 Child& Child::operator=(Child&& other) noexcept {
   std::swap(pid_, other.pid_);
   std::swap(name_, other.name_);
   std::swap(log_file_, other.log_file_);
   std::swap(wait_status_, other.wait_status_);
+  std::swap(usage_, other.usage_);
   return *this;
 }
 
@@ -88,9 +91,19 @@ Result<Child> Child::start(const std::vector<std::string>& command, const std::f
 
 bool Child::running() {
   if (pid_ < 0 || wait_status_) return false;
-  int status = 0;
-  if (waitpid(pid_, &status, WNOHANG) == pid_) wait_status_ = status;
+  reap(WNOHANG);
   return !wait_status_;
+}
+
+void Child::reap(int wait_options) {
+  int status = 0;
+  rusage used{};
+  if (wait4(pid_, &status, wait_options, &used) != pid_) return;
+  wait_status_ = status;
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  usage_ = {seconds(used.ru_utime) + seconds(used.ru_stime), static_cast<double>(used.ru_maxrss) / 1024};
 }
 
 void Child::wait_for(std::chrono::milliseconds limit) {
@@ -110,8 +123,7 @@ Status Child::stop(std::chrono::milliseconds grace) {
   wait_for(grace);
   if (running()) {
     kill(pid_, SIGKILL);
-    int status = 0;
-    if (waitpid(pid_, &status, 0) == pid_) wait_status_ = status;
+    reap(0);
   }
   pid_ = -1;
   const int status = wait_status_.value_or(0);

@@ -30,17 +30,25 @@ class Child {
   Status stop(std::chrono::milliseconds grace = std::chrono::seconds(5));
   /// Asks it to stop and returns at once, so that many can stop side by side; `stop` then waits.
   void ask_to_stop();
+  /// CPU time and most memory of one that has ended; 0 before. Linux counts in what the parent held when it started
+  /// the child, so memory is an upper bound.
+  struct Usage {
+    double cpu_s = 0, peak_mb = 0;
+  };
+  [[nodiscard]] Usage usage() const { return usage_; }
   /// What went wrong with a child that ended by itself, with its last log lines.
   [[nodiscard]] Error failure() const;
 
  private:
   Child(pid_t pid, std::string name, std::filesystem::path log_file);
   void wait_for(std::chrono::milliseconds limit);
+  void reap(int wait_options);
 
   pid_t pid_ = -1;
   std::string name_;
   std::filesystem::path log_file_;
   std::optional<int> wait_status_;  ///< set once it has ended
+  Usage usage_;
 };
 
 /// The last `count` non-empty lines of a file, joined by " | "; empty when there are none.

@@ -105,6 +105,8 @@ void add_device(std::string& table, const RunFacts& run, const DeviceScore& devi
                       cell(spots.latency_ms_p99, 1), cell(device.first_pose_ms, 0)));
   if (const auto cpu_ms = cpu_ms_per_localized_s(run, device))
     add_row(table, "client CPU", fmt::format("{:.1f} ms per localized second", *cpu_ms));
+  if (const auto peak = run.client_peak_mb.find(device.id); peak != run.client_peak_mb.end())
+    add_row(table, "client memory", fmt::format("{:.0f} MB at most", peak->second));
   if (!device.local) return;
   const LocalScore& local = *device.local;
   text = fmt::format("median {} ms a frame", cell(local.latency_ms_median, 2));
@@ -131,6 +133,8 @@ std::string to_json(const Report& report) {
   for (const DeviceScore& device : report.devices) {
     Json& entry = json["devices"][device.id] = json_of(device);
     entry["client_cpu_ms_per_localized_s"] = json_of(cpu_ms_per_localized_s(run, device));
+    if (const auto peak = run.client_peak_mb.find(device.id); peak != run.client_peak_mb.end())
+      entry["client_memory_mb"] = peak->second;
   }
   return json.dump(1) + "\n";
 }

@@ -30,6 +30,17 @@ TEST_F(ChildTest, OneThatEndsWellIsNoError) {
   EXPECT_EQ(last_lines(log_, 3), "done");
 }
 
+TEST_F(ChildTest, TellsWhatItUsed) {
+  auto child = shell("i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done");
+  ASSERT_TRUE(child);
+  EXPECT_EQ(child->usage().peak_mb, 0);
+  while (child->running()) std::this_thread::sleep_for(milliseconds(5));
+  EXPECT_TRUE(child->stop());
+  EXPECT_GT(child->usage().cpu_s, 0);
+  EXPECT_GT(child->usage().peak_mb, 0.1);
+  EXPECT_LT(child->usage().peak_mb, 100);
+}
+
 TEST_F(ChildTest, AFailureCarriesItsLastLines) {
   auto child = shell("echo one; echo two >&2; echo three; echo four; exit 7");
   ASSERT_TRUE(child);

@@ -30,8 +30,8 @@ class Child {
   Status stop(std::chrono::milliseconds grace = std::chrono::seconds(5));
   /// Asks it to stop and returns at once, so that many can stop side by side; `stop` then waits.
   void ask_to_stop();
-  /// CPU time and most memory of one that has ended; 0 before. Linux counts in what the parent held when it started
-  /// the child, so memory is an upper bound.
+  /// CPU time and most memory of one that has ended; 0 before. Linux counts in what the parent held when it
+  /// started the child, so memory is an upper bound.
   struct Usage {
     double cpu_s = 0, peak_mb = 0;
   };

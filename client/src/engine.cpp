@@ -146,7 +146,8 @@ void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, cons
   }
   if (!schedule.due(image.stamp_ns, placed.informative, !placed.step.doubtful)) return;
   auto made = cloud_of(image, options.camera, points).and_then([&](const Cloud& cloud_sensor) {
-    return requests.make(cloud_sensor, odometry.map(), imu ? &*imu : nullptr);
+    return requests.make(cloud_sensor, odometry.map(), imu ? &*imu : nullptr,
+                         link.located(placed.step.segment));
   });
   if (!made) {
     log::warning("{}: frame {} is not sent: {}", options.client_id, image.stamp_ns, made.error().message);

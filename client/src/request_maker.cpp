@@ -12,9 +12,10 @@ namespace {
 
 constexpr std::size_t kMostLocalPoses = 250;  // a message holds 256; older ones of a long silence are left out
 constexpr std::size_t kLpcPoints = 4000;      // 6 to 7 kB at 0.05 m
-constexpr StampNs kSubmapAge = from_ms(10'000);  // since a surface was seen; odometry drifts by millimetres
+constexpr StampNs kSubmapAge = from_ms(10'000);  // since a surface was seen, where odometry is sure of itself
 constexpr std::size_t kSubmapPoints = 2000;      // about 3 kB at 0.05 m
 constexpr std::size_t kFewestSubmapPoints = 60;  // fewer tell nothing
+constexpr double kSteadySdM = 0.01, kSteadySdRad = radians(0.4);  // of the motion between two requests
 constexpr double kOdomSdM = 0.002, kOdomSdRad = 0.001, kOdomSdShare = 0.005;  // clocks; scale of path and turn
 
 /// Finer voxels of the same surfaces are more: with fewer points they would hang in the air.
@@ -39,8 +40,9 @@ void RequestMaker::travelled(StampNs stamp_ns, const OdometryStep& step, bool in
   path_.push_back({stamp_ns, step.T_odom_sensor, informative});
 }
 
-void RequestMaker::add_surroundings(const LocalMap& surroundings, SpotRequest& request) const {
-  const Cloud standing = surroundings.standing(request.stamp_ns - kSubmapAge, request.stamp_ns);
+void RequestMaker::add_surroundings(const LocalMap& surroundings, StampNs since_ns,
+                                    SpotRequest& request) const {
+  const Cloud standing = surroundings.standing(since_ns, request.stamp_ns);
   const auto thinned = [&](std::size_t most) {
     Cloud extra = outside_view(standing, request.T_odom_sensor, request.view, most);
     return extra.size() < kFewestSubmapPoints ? Cloud{} : extra;
@@ -52,7 +54,7 @@ void RequestMaker::add_surroundings(const LocalMap& surroundings, SpotRequest& r
 }
 
 Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap& surroundings,
-                                       const ImuTrack* imu) {
+                                       const ImuTrack* imu, bool located) {
   const auto thinned = [&](std::size_t most) {
     return voxel_downsample(cloud_sensor, options_.voxel_size_m, most);
   };
@@ -77,7 +79,10 @@ Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap
     r.up_sd_rad = imu->up_sd_rad();
   }
   r.cold = options_.cold;
-  if (options_.submap && !options_.cold) add_surroundings(surroundings, r);
+  if (r.odom_sd_m > kSteadySdM || r.odom_sd_rad > kSteadySdRad) unsteady_ns_ = r.stamp_ns;
+  const StampNs oldest_ns = r.stamp_ns - kSubmapAge;
+  if (options_.submap && !options_.cold)
+    add_surroundings(surroundings, located ? std::max(oldest_ns, unsteady_ns_) : oldest_ns, r);
   path_m_ = turned_rad_ = 0;
   return r;
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kContradicts_rad = radians(5.0);  // planes tell up to a degree or two
 constexpr double kSure = 0.5;                      // confidence above which planes may contradict the device
-constexpr int kSketchIterations = 12;
+constexpr int kSketchIterations = 6;
 constexpr double kRival = 0.5;  // of the likeliest direction's confidence: less likely ones are not tried
 
 }  // namespace

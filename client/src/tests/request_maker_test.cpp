@@ -77,6 +77,37 @@ TEST_F(Requests, TellWhatTheOdometryDoubts) {
   EXPECT_NEAR(request.odom_sd_rad, 0.05, 1e-3);
 }
 
+/// A wall behind the device, seen long ago.
+LocalMap wall_behind() {
+  std::vector<Surfel> wall;
+  for (int i = 0; i < 400; ++i) {
+    Surfel surfel;
+    surfel.mean = {0.2F * static_cast<float>(i % 20) - 2, 0.1F * static_cast<float>(i / 20) - 1, -2};
+    surfel.normal = Eigen::Vector3f::UnitZ();
+    surfel.count = 20;
+    wall.push_back(surfel);
+  }
+  LocalMap map{{}};
+  for (const int frame : {0, 1, 2}) map.insert(Pose::Identity(), wall, stamp_of(frame));
+  return map;
+}
+
+TEST_F(Requests, OfALocatedDeviceHoldSurroundingsThatOdometryPlacedWell) {
+  const LocalMap wall = wall_behind();
+  const auto extra_of = [&](double sd_m, bool located) {
+    RequestMaker fresh{engine_options()};
+    OdometryStep step;
+    step.sd_m = sd_m;
+    fresh.travelled(stamp_of(60), step, true);
+    const auto request = fresh.make(cloud, wall, nullptr, located);
+    EXPECT_TRUE(request) << request.error().message;
+    return request ? request->extra.bytes.size() : 0;
+  };
+  EXPECT_GT(extra_of(0.001, true), 0U);
+  EXPECT_EQ(extra_of(0.1, true), 0U) << "the wall may be anywhere by now";
+  EXPECT_EQ(extra_of(0.1, false), extra_of(0.001, true)) << "whoever is lost needs all there is";
+}
+
 TEST_F(Requests, SayNothingOfASegmentThatBroke) {
   travel(0, 20);
   travel(20, 21, 1);

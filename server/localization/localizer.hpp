@@ -35,8 +35,8 @@ struct LocalizerOptions {
   std::uint64_t seed = 1;  ///< all randomness comes from it, the client id and the request's seq
   int threads = 1;         ///< per request
   std::string server_id = "liloc";
-  /// A search of the room may take so long, then what it has counts. Without a limit answers do not depend on
-  /// load.
+  /// A search of the room may take so long, then the request is refused: what was not searched may look like
+  /// what was. Without a limit answers do not depend on load.
   std::chrono::steady_clock::duration search_limit = GravitySearchOptions{}.time_limit;
 
   [[nodiscard]] Verify verify_or_default() const;

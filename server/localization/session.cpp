@@ -41,8 +41,9 @@ double log_odds_alone(const std::vector<Hypothesis>& found, const TrackOptions& 
 
 /// Whether refinement has left the prediction by more than chance and the judge sees no reason for it: surfaces
 /// that hardly hold a pose let it slide.
-bool idly_elsewhere(const Spot& spot, const Hypothesis& here, const PoseEstimate& predicted) {
-  if (surprise_of(predicted, estimate_of(spot, here)) <= kMostSurprise) return false;
+bool idly_elsewhere(const Spot& spot, const Hypothesis& here, const PoseEstimate& seen,
+                    const PoseEstimate& predicted) {
+  if (surprise_of(predicted, seen) <= kMostSurprise) return false;
   const Judgement stayed = judge(spot.problem().target, spot.query(), spot.query().medium,
                                  predicted.T_map_sensor, spot.problem().judging.fine_tolerance_m);
   return here.judgement.score < stayed.score + SettleOptions{}.as_good;
@@ -170,8 +171,10 @@ bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* re
     evidence_.best = here;
     evidence_.stayed = same_place(here.T_map_sensor(), predicted, verify_.tracks.gate);
   }
-  if (follows(evidence_, verify_) && !idly_elsewhere(spot, here, *estimate_))
-    estimate_ = fused(*estimate_, estimate_of(spot, here));
+  if (follows(evidence_, verify_)) {
+    const PoseEstimate seen = estimate_of(spot, here);
+    if (!idly_elsewhere(spot, here, seen, *estimate_)) estimate_ = fused(*estimate_, seen);
+  }
   evidence_.best_estimate = *estimate_;
   report(here, *estimate_, last_margin_, reply);
   return holds(evidence_, verify_);

@@ -1,7 +1,9 @@
 #include "server/localization/spot_solver.hpp"
 
 #include <algorithm>
+#include <chrono>
 
+#include "common/base/log.hpp"
 #include "common/codec/codec.hpp"
 #include "common/registration/feature_search.hpp"
 
@@ -105,7 +107,15 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
   const SpotProblem& problem = spot.problem();
   std::vector<Hypothesis> found;
   for (const UpPair& up : ups_to_try(problem)) {
-    found = merged(std::move(found), judge_candidates(problem, GravityProposer(up).propose(problem)));
+    const auto began = std::chrono::steady_clock::now();
+    const std::vector<Candidate> candidates = GravityProposer(up).propose(problem);
+    if (std::chrono::steady_clock::now() - began >= problem.search_limit) {
+      log::warning(
+          "a search was cut off after {:.1f} s and is not believed: what it did not reach may look alike",
+          std::chrono::duration<double>(problem.search_limit).count());
+      return {};
+    }
+    found = merged(std::move(found), judge_candidates(problem, candidates));
     if (up.borne_out && !found.empty()) return found;  // every place was looked at; features never won there
   }
   if (convincing(found)) return found;

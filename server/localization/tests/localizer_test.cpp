@@ -90,6 +90,17 @@ TEST(Localizer, RefusalsSayWhy) {
   EXPECT_THAT(reply.text, testing::HasSubstr("points"));
 }
 
+TEST(Localizer, ASearchThatWasCutOffIsNotBelieved) {
+  LocalizerOptions options;
+  options.search_limit = std::chrono::seconds(0);
+  World world(2, options);
+  for (int k = 0; k < 4; ++k) {
+    const SpotReply reply = world.ask(k);
+    EXPECT_EQ(reply.status, SpotStatus::refused) << "what it did not reach may look alike";
+    EXPECT_EQ(reply.reason, Reason::not_found);
+  }
+}
+
 /// Four spots of a walk whose device takes `up_sensor` of the truth for up; how many are right.
 int right_spots(World& world, const std::function<void(SpotRequest*)>& spoil, bool* noticed = nullptr) {
   int right = 0;

@@ -30,6 +30,7 @@ void RequestMaker::travelled(StampNs stamp_ns, const OdometryStep& step, bool in
   if (step.segment != last_.segment) {  // poses of the old segment say nothing about the new one
     path_.clear();
     path_m_ = turned_rad_ = 0;
+    unsteady_ns_ = 0;
   } else if (travelled_) {
     path_m_ += distance_m(step.T_odom_sensor, last_.T_odom_sensor);
     turned_rad_ += angle_between_rad(step.T_odom_sensor, last_.T_odom_sensor);

@@ -27,7 +27,7 @@ class RequestMaker {
   std::uint64_t next_seq_ = 1;
   std::vector<LocalPose> path_;  ///< since the last request
   OdometryStep last_;
-  StampNs unsteady_ns_ = 0;  ///< of the last request whose motion is not known well
+  StampNs unsteady_ns_ = 0;  ///< of this segment's last request whose motion is not known well
   bool travelled_ = false;
   double path_m_ = 0, turned_rad_ = 0;  ///< since the last request
 };

@@ -3,6 +3,7 @@
 #include "common/geometry/depth.hpp"
 
 namespace liloc {
+
 Cloud outside_view(const Cloud& map_odom, const Pose& T_odom_sensor, const SensorView& view,
                    std::size_t most_points) {
   const Eigen::Isometry3f T_sensor_odom = T_odom_sensor.inverse().cast<float>();

@@ -108,6 +108,19 @@ TEST_F(Requests, OfALocatedDeviceHoldSurroundingsThatOdometryPlacedWell) {
   EXPECT_EQ(extra_of(0.1, false), extra_of(0.001, true)) << "whoever is lost needs all there is";
 }
 
+TEST_F(Requests, OfANewSegmentHoldItsSurroundingsWhateverWasUnsureBefore) {
+  OdometryStep step;
+  step.sd_m = 0.1;
+  maker.travelled(stamp_of(60), step, true);
+  (void)make();
+  step = {};
+  step.segment = 1;
+  maker.travelled(stamp_of(40), step, true);  // the device's clock was set back
+  const auto request = maker.make(cloud, wall_behind(), nullptr, true);
+  ASSERT_TRUE(request) << request.error().message;
+  EXPECT_FALSE(request->extra.bytes.empty());
+}
+
 TEST_F(Requests, SayNothingOfASegmentThatBroke) {
   travel(0, 20);
   travel(20, 21, 1);

@@ -83,7 +83,8 @@ Status Daemon::open_client() {
         if (ros_) ros_->tell(update);
       },
       [this](const client::Reply& reply) {
-        log::debug("reply to {}: {} ({}) {}", reply.stamp_ns, reply.status, reply.reason, reply.text);
+        log::debug("reply to {}: {} ({}), confidence {:.4f}; {}", reply.stamp_ns, reply.status, reply.reason,
+                   reply.confidence, reply.text);
         if (ros_) ros_->take(reply);
       });
   if (!made) return fail("{}", made.error());

@@ -92,7 +92,9 @@ void declare_answers(py::module_& module) {
                              [](const Reply& r) {
                                return py::array_t<double>({6, 6}, r.covariance.data());
                              })
-      .def_readonly("latency_ms", &Reply::latency_ms);
+      .def_readonly("latency_ms", &Reply::latency_ms)
+      .def_readonly("confidence", &Reply::confidence)
+      .def_readonly("advice", &Reply::advice);
 }
 
 std::shared_ptr<PythonClient> make_client(Options options, const std::string& local,

@@ -139,6 +139,8 @@ liloc_reply to_c(const Reply& reply) {
   r.T_map_sensor = to_c(reply.T_map_sensor.value_or(Pose{}));
   std::copy(reply.covariance.begin(), reply.covariance.end(), r.covariance);
   r.latency_ms = reply.latency_ms;
+  r.confidence = reply.confidence;
+  r.advice = reply.advice.c_str();
   return r;
 }
 

@@ -136,6 +136,8 @@ Reply to_public(const SpotReply& reply) {
   if (reply.T_map_sensor) r.T_map_sensor = to_public(*reply.T_map_sensor);
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(r.covariance.data()) = reply.covariance;
   r.latency_ms = reply.latency_ms;
+  r.confidence = reply.confidence;
+  r.advice = name_of(reply.advice);
   return r;
 }
 

@@ -8,7 +8,7 @@ namespace {
 constexpr char kLocalHeader[] = "stamp_ns,informative,method,converged,latency_ms,tx,ty,tz,qx,qy,qz,qw";
 constexpr char kSpotsHeader[] =
     "stamp_ns,gpc_stamp_ns,status,verified,reason,tx,ty,tz,qx,qy,qz,qw,fitness,inlier_rmse_m,overlap,margin,"
-    "latency_ms";
+    "latency_ms,confidence,advice";
 constexpr char kTumHeader[] = "# timestamp_s tx ty tz qx qy qz qw : T_map_sensor";
 
 std::string numbers(const Pose& T, char separator) {
@@ -84,10 +84,11 @@ void TraceWriter::write_spot(const SpotReply& reply) {
                         reply.verified(), name_of(reply.reason),
                         reply.T_map_sensor ? numbers(*reply.T_map_sensor, ',') : ",,,,,,");
   if (answered)
-    spots_ << fmt::format(",{:.4f},{:.5f},{:.4f},{:.4f},{:.3f}", reply.fitness, reply.inlier_rmse_m,
-                          reply.overlap, reply.margin, reply.latency_ms);
+    spots_ << fmt::format(",{:.4f},{:.5f},{:.4f},{:.4f},{:.3f},{:.5f},{}", reply.fitness, reply.inlier_rmse_m,
+                          reply.overlap, reply.margin, reply.latency_ms, reply.confidence,
+                          name_of(reply.advice));
   else
-    spots_ << ",,,,,";
+    spots_ << ",,,,,,,";
   spots_ << std::endl;
 }
 

@@ -62,6 +62,26 @@ std::string_view name_of(Reason reason) {
   return "unknown";
 }
 
+std::string_view name_of(Advice advice) {
+  switch (advice) {
+    case Advice::none:
+      return "none";
+    case Advice::wait:
+      return "wait";
+    case Advice::turn_around:
+      return "turn_around";
+    case Advice::move_on:
+      return "move_on";
+    case Advice::more_coverage:
+      return "more_coverage";
+    case Advice::twin:
+      return "twin";
+    case Advice::clear_view:
+      return "clear_view";
+  }
+  return "unknown";
+}
+
 SpotReply refusal(const SpotRequest& request, Reason reason, std::string text) {
   SpotReply reply;
   reply.client_id = request.client_id;

@@ -13,7 +13,7 @@
 namespace liloc {
 
 /// Raised when a message changes its meaning; a server answers other versions with Reason::protocol_version.
-constexpr std::uint16_t kProtocolVersion = 1;
+constexpr std::uint16_t kProtocolVersion = 2;
 
 enum class CloudCodec : std::uint8_t { draco = 1, octree = 2, voxel = 3 };
 
@@ -69,20 +69,20 @@ enum class SpotStatus : std::uint8_t { verified = 1, provisional = 2, refused = 
 /// Why a reply is what it is. Ids are added, never reused.
 enum class Reason : std::uint8_t {
   none = 0,
-  confirmed = 1,          ///< verified: the equality checks hold over several spots
-  conclusive = 2,         ///< verified: free space and margin alone decide
-  corrected = 3,          ///< verified: this spot was contradicted by the others and corrected
-  awaiting_spots = 10,    ///< provisional: too few spots to verify
-  ambiguous = 11,         ///< provisional: a distinct second pose scores nearly as well
-  inconsistent = 12,      ///< provisional: the spots contradict each other
-  weak = 13,              ///< provisional: too little overlap or too many violations to say
-  no_gpc = 20,            ///< refused: no global cloud within 100 ms of the request's stamp
-  not_found = 21,         ///< refused: no candidate pose was acceptable
-  superseded = 22,        ///< refused: a newer request of the same client took its place
-  overloaded = 23,        ///< refused: the queue was full
-  late = 24,              ///< refused: older than the client's last answered request
-  bad_request = 25,       ///< refused: a value out of range; `text` names it
-  bad_cloud = 26,         ///< refused: the LPC could not be decoded, or has too few points
+  confirmed = 1,        ///< verified: by this spot and those before it (or the paper's checks, where chosen)
+  conclusive = 2,       ///< verified: by this spot alone
+  corrected = 3,        ///< verified: this spot's own search led elsewhere, the others outweigh it
+  awaiting_spots = 10,  ///< provisional: too few spots to verify
+  ambiguous = 11,     ///< provisional: the likeliest place is not likely enough; `advice` says what would help
+  inconsistent = 12,  ///< provisional: the same, and this spot's own search led elsewhere
+  weak = 13,          ///< provisional: a pose that was verified before and that this spot leaves in doubt
+  no_gpc = 20,        ///< refused: no global cloud within 100 ms of the request's stamp
+  not_found = 21,     ///< refused: no candidate pose was acceptable
+  superseded = 22,    ///< refused: a newer request of the same client took its place
+  overloaded = 23,    ///< refused: the queue was full
+  late = 24,          ///< refused: older than the client's last answered request
+  bad_request = 25,   ///< refused: a value out of range; `text` names it
+  bad_cloud = 26,     ///< refused: the LPC could not be decoded, or has too few points
   protocol_version = 27,  ///< refused: client and server speak different versions
   identity = 28,          ///< refused: client_id is not the one bound to the sender's partition
   rate_limit = 29,        ///< refused: the client asks too often
@@ -90,7 +90,19 @@ enum class Reason : std::uint8_t {
   no_answer = 31,         ///< set by a client whose request timed out
 };
 
+/// What would help where an answer is not verified. Ids are added, never reused.
+enum class Advice : std::uint8_t {
+  none = 0,
+  wait = 1,           ///< few spots so far: more of the same will do
+  turn_around = 2,    ///< what is in view tells too little: look elsewhere from here
+  move_on = 3,        ///< what can be seen from here tells too little
+  more_coverage = 4,  ///< the ceiling does not see this place
+  twin = 5,           ///< another place of the room looks alike; `text` says which
+  clear_view = 6,     ///< lines of sight are contradicted: people close by, or a calibration that is off
+};
+
 [[nodiscard]] std::string_view name_of(SpotStatus status);
+[[nodiscard]] std::string_view name_of(Advice advice);
 [[nodiscard]] std::string_view name_of(Reason reason);
 
 struct SpotReply {
@@ -106,7 +118,10 @@ struct SpotReply {
   double fitness = 0;                      ///< share of LPC points with a GPC point within one voxel
   double inlier_rmse_m = 0;                ///< over those
   double overlap = 0;  ///< share of LPC points in space that the ceiling sees and that agree, of those seen
-  double margin = 0;   ///< score over the best distinct runner-up's, 0..1
+  double margin = 0;   ///< score over the best distinct runner-up's, 0..1; 0 where the room was not searched
+  /// Probability that T_map_sensor is within 10 degrees and 0.3 m of the truth; verified is a threshold on it.
+  double confidence = 0;
+  Advice advice = Advice::none;
   /// Where odometry lies in the map, as far as all spots of the segment tell; set when verified.
   std::optional<Pose> T_map_odom;
   std::uint32_t odom_segment = 0;

@@ -40,6 +40,8 @@ liloc_msg_SpotReply to_wire(const SpotReply& reply, std::uint64_t session) {
   m.request_sent_ns = reply.request_sent_ns;
   m.server_received_ns = reply.server_received_ns;
   m.server_sent_ns = reply.server_sent_ns;
+  m.confidence = reply.confidence;
+  m.advice = static_cast<std::uint8_t>(reply.advice);
   return m;
 }
 
@@ -66,13 +68,16 @@ Result<SpotReply> from_wire(const liloc_msg_SpotReply& message) {
   reply.request_sent_ns = message.request_sent_ns;
   reply.server_received_ns = message.server_received_ns;
   reply.server_sent_ns = message.server_sent_ns;
+  reply.confidence = message.confidence;
+  reply.advice = static_cast<Advice>(message.advice);  // a newer server may know more of them, too
   const Status numbers =
       all_of(stamp_of(message.stamp_ns, "stamp_ns"), stamp_of(message.gpc_stamp_ns, "gpc_stamp_ns"),
              stamp_of(message.request_sent_ns, "request_sent_ns"),
              stamp_of(message.server_received_ns, "server_received_ns"),
              stamp_of(message.server_sent_ns, "server_sent_ns"), finite(message.fitness, "fitness", 0, 1),
              finite(message.inlier_rmse_m, "inlier_rmse_m", 0, 1e3), finite(message.overlap, "overlap", 0, 1),
-             finite(message.margin, "margin", -1e6, 1e6), finite(message.latency_ms, "latency_ms", 0, 1e9));
+             finite(message.margin, "margin", -1e6, 1e6), finite(message.latency_ms, "latency_ms", 0, 1e9),
+             finite(message.confidence, "confidence", 0, 1));
   if (!numbers) return tl::unexpected(numbers.error());
   const Status poses =
       all_of(read_pose(message.has_T_map_sensor, message.T_map_sensor, "T_map_sensor", reply.T_map_sensor),

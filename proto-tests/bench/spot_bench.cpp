@@ -5,8 +5,7 @@
 //   liloc_spot_bench --sites 100 --recordings DIR... --pairs DIR --threads 1 2 --peer-every 10   # all in one
 //   run,
 //                                                                       # PCL and Open3D on the same clouds
-//   liloc_spot_bench --sites 100 --evidence rows.txt; liloc_spot_bench --sweep rows.txt   # thresholds, as
-//   Markdown
+//   liloc_spot_bench --sites 100 --evidence rows.csv   # what fit_confidence.py makes the confidence of
 //
 // The devices run the client's engine, so that requests are what a server gets.
 #include <fmt/format.h>
@@ -15,7 +14,6 @@
 
 #include "proto-tests/bench/spot_bench_pairs.hpp"
 #include "proto-tests/bench/spot_bench_spots.hpp"
-#include "proto-tests/bench/spot_bench_sweep.hpp"
 
 namespace liloc::bench {
 namespace {
@@ -25,7 +23,7 @@ constexpr int kSites = 20;  // when nothing else is asked for
 struct Options {
   std::optional<int> sites;
   std::vector<int> threads{1};
-  std::string pairs, csv, evidence, sweep;
+  std::string pairs, csv, evidence;
   SpotsOptions spots;
 
   [[nodiscard]] Status validated() const {
@@ -58,12 +56,6 @@ Result<TrialResult> run_with(const Options& options, int threads) {
 }
 
 Status run(Options options) {
-  if (!options.sweep.empty()) {
-    const auto evidence = read_evidence(options.sweep);
-    if (!evidence) return tl::unexpected(evidence.error());
-    print_sweep(*evidence);
-    return {};
-  }
   if (Status sound = options.validated(); !sound) return sound;
   options.spots.sites =
       options.sites.value_or(options.spots.recordings.empty() && options.pairs.empty() ? kSites : 0);
@@ -100,8 +92,7 @@ void declare(CLI::App& app, Options& options) {
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   app.add_option("--csv", options.csv, "Write a row per spot");
-  app.add_option("--evidence", options.evidence, "Write what each decision rested on, for --sweep");
-  app.add_option("--sweep", options.sweep, "Read such a file and print what other thresholds would have done");
+  app.add_option("--evidence", options.evidence, "Write what each search rested on, for fit_confidence.py");
   app.add_flag_callback(
       "--no-gravity", [&spots] { spots.trial.gravity = false; }, "Requests do not say where up is");
   app.add_flag("--verbose", spots.verbose, "Print every spot");

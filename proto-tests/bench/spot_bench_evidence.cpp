@@ -3,76 +3,34 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <sstream>
 
 namespace liloc::bench {
-namespace {
 
-bool right(const std::optional<Hypothesis>& hypothesis, const PoseEstimate& estimate, const Pose& truth) {
-  return hypothesis && degrees(angle_between_rad(estimate.T_map_sensor, truth)) <= 10 &&
-         distance_m(estimate.T_map_sensor, truth) <= 0.3;
-}
-
-std::string text_of(const std::optional<Hypothesis>& hypothesis, const PoseEstimate& estimate, bool is_right) {
-  if (!hypothesis) return "0 0 0 0 0 0 0 0 0";
-  const Judgement& j = hypothesis->judgement;
-  return fmt::format("1 {:d} {:.5f} {:.5f} {:.5f} {:.5f} {:.5f} {:.6f} {:.6f}", is_right, j.agree, j.conflict,
-                     j.map_agree, j.score, hypothesis->alignment.pair_share, estimate.sd_rad(),
-                     estimate.sd_m());
-}
-
-bool read(std::istream& in, std::optional<Hypothesis>* hypothesis, PoseEstimate* estimate, bool* is_right) {
-  Hypothesis h;
-  bool present = false;
-  double sd_rad = 0, sd_m = 0;
-  Judgement& j = h.judgement;
-  if (!(in >> present >> *is_right >> j.agree >> j.conflict >> j.map_agree >> j.score >>
-        h.alignment.pair_share >> sd_rad >> sd_m))
-    return false;
-  if (present) *hypothesis = h;
-  estimate->covariance.diagonal() << Eigen::Vector3d::Constant(sd_rad * sd_rad),
-      Eigen::Vector3d::Constant(sd_m * sd_m);
-  return true;
-}
-
-}  // namespace
-
-EvidenceRow against_truth(const Evidence& evidence, const Pose& T_map_sensor_true) {
-  EvidenceRow row;
-  row.evidence = evidence;
-  row.own_right = right(evidence.own, evidence.own_estimate, T_map_sensor_true);
-  row.best_right = right(evidence.best, evidence.best_estimate, T_map_sensor_true);
-  return row;
+std::vector<bool> against_truth(const Evidence& evidence, const Pose& T_map_sensor_true) {
+  std::vector<bool> right;
+  for (const Pose& T : evidence.T_map_sensors)
+    right.push_back(degrees(angle_between_rad(T, T_map_sensor_true)) <= 10 &&
+                    distance_m(T, T_map_sensor_true) <= 0.3);
+  return right;
 }
 
 Status write_evidence(const std::string& path, const std::vector<EvidenceRow>& rows) {
   std::ofstream out(path);
-  for (const EvidenceRow& r : rows)
-    out << fmt::format("{} {:d} {:.4f} {} {} {:.5f} {:.4f} {:d} {:.4f} {}\n", r.seed, r.live, r.overlap,
-                       text_of(r.evidence.own, r.evidence.own_estimate, r.own_right),
-                       text_of(r.evidence.best, r.evidence.best_estimate, r.best_right), r.evidence.margin,
-                       r.evidence.own_log_odds, r.evidence.stayed, r.evidence.log_odds, r.evidence.spots);
+  out << "site,seed,client,cold,t_s,overlap,spot,place,right,agreeing,searches,support,contradiction,excess,"
+         "misfit,bits,sd_m\n";
+  for (std::size_t spot = 0; spot < rows.size(); ++spot) {
+    const EvidenceRow& r = rows[spot];
+    for (std::size_t i = 0; i < r.evidence.places.size(); ++i) {
+      const PlaceEvidence& p = r.evidence.places[i];
+      out << fmt::format(
+          "\"{}\",{},{},{:d},{:.2f},{:.3f},{},{},{:d},{:.0f},{:.0f},{:.5f},{:.5f},{:.6f},{:.4f},{:.3f},{:.6f}"
+          "\n",
+          r.site, r.seed, r.client, r.cold, r.t_s, r.overlap, spot, i, r.right[i] ? 1 : 0, p.agreeing,
+          p.searches, p.looks.support, p.looks.contradiction, p.looks.excess, p.looks.misfit, p.bits, p.sd_m);
+    }
+  }
   if (!out.flush()) return fail("{}: cannot be written; name a file in a folder that exists", path);
   return {};
-}
-
-Result<std::vector<EvidenceRow>> read_evidence(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) return fail("{}: cannot be read; write it with --evidence", path);
-  std::vector<EvidenceRow> rows;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream fields(line);
-    EvidenceRow r;
-    const bool whole = fields >> r.seed >> r.live >> r.overlap &&
-                       read(fields, &r.evidence.own, &r.evidence.own_estimate, &r.own_right) &&
-                       read(fields, &r.evidence.best, &r.evidence.best_estimate, &r.best_right) &&
-                       fields >> r.evidence.margin >> r.evidence.own_log_odds >> r.evidence.stayed >>
-                           r.evidence.log_odds >> r.evidence.spots;
-    if (!whole)
-      return fail("{}: line {} is no row of evidence; write it with --evidence", path, rows.size() + 1);
-    rows.push_back(std::move(r));
-  }
-  return rows;
 }
 
 }  // namespace liloc::bench

@@ -1,5 +1,5 @@
 #pragma once
-// What decisions rested on, against the truth: rows on which other thresholds can be tried without a search.
+// What searches rested on, against the truth: from these rows fit_confidence.py makes the model of confidence.
 #include <string>
 #include <vector>
 
@@ -8,19 +8,18 @@
 namespace liloc::bench {
 
 struct EvidenceRow {
+  std::string site, client;
   std::uint64_t seed = 0;
-  bool live = false;  ///< of a session as a server keeps it; otherwise of one that never believes what it finds
-  double overlap = 0;                          ///< true
-  bool own_right = false, best_right = false;  ///< within 10 deg and 0.3 m
-  Evidence evidence;                           ///< of the estimates only the standard deviations survive a file
-
-  [[nodiscard]] bool followed() const { return !evidence.own; }
+  bool cold = false;        ///< one spot on its own; otherwise of a session that never believes what it finds
+  double t_s = 0;           ///< since the client's first request
+  double overlap = 0;       ///< true
+  std::vector<bool> right;  ///< of each place: within 10 deg and 0.3 m
+  Evidence evidence;
 };
 
-[[nodiscard]] EvidenceRow against_truth(const Evidence& evidence, const Pose& T_map_sensor_true);
+[[nodiscard]] std::vector<bool> against_truth(const Evidence& evidence, const Pose& T_map_sensor_true);
 
-/// Errors: the file cannot be written or read; a row that is none, by its line.
+/// One line per place, best first. Error: the file cannot be written.
 [[nodiscard]] Status write_evidence(const std::string& path, const std::vector<EvidenceRow>& rows);
-[[nodiscard]] Result<std::vector<EvidenceRow>> read_evidence(const std::string& path);
 
 }  // namespace liloc::bench

@@ -8,6 +8,7 @@
 #include "client/src/engine.hpp"
 #include "common/codec/codec.hpp"
 #include "common/registration/normals.hpp"
+#include "common/registration/pose_covariance.hpp"
 #include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/truth.hpp"
 #include "server/localization/localizer.hpp"
@@ -29,8 +30,9 @@ struct Asked {
 struct Device {
   explicit Device(EngineOptions options) : engine(std::move(options)) {}
   Engine engine;
-  std::unique_ptr<Session> live, searching;  ///< where evidence is gathered
-  std::deque<Asked> held;                    ///< not yet answered; oldest first
+  std::unique_ptr<Session> doubting;  ///< where evidence is gathered
+  std::optional<StampNs> first_asked_ns;
+  std::deque<Asked> held;  ///< not yet answered; oldest first
 };
 
 LocalizerOptions localizer_options(const TrialOptions& options) {
@@ -39,10 +41,9 @@ LocalizerOptions localizer_options(const TrialOptions& options) {
   return localizer;
 }
 
-/// Thresholds that nothing passes.
-VerifyOptions never() {
-  VerifyOptions options;
-  options.log_odds = options.log_odds_few = 1e9;
+/// Of a session that never believes what it finds.
+LocalizerOptions doubting(LocalizerOptions options) {
+  options.risk = -1;
   return options;
 }
 
@@ -57,8 +58,7 @@ class Trial {
         recent_(stage.site.global_lidars.size()) {
     for (const DeviceInfo& device : stage.devices) {
       devices_.push_back(std::make_unique<Device>(replay::engine_options_of(device, true)));
-      devices_.back()->live = std::make_unique<Session>(server_options_);
-      devices_.back()->searching = std::make_unique<Session>(server_options_, never());
+      devices_.back()->doubting = std::make_unique<Session>(doubting(server_options_));
     }
   }
 
@@ -116,17 +116,19 @@ class Trial {
     cloud_.prepare();  // which the server does beside its requests
     prepare_ms_ = thread_cpu_ms() - before_ms;
     SpotRequest alone = asked.request;
-    alone.cold = !options_.evidence;
+    alone.cold = true;
     alone.extra.bytes.clear();
     Device& d = *devices_[device];
     if (options_.peer_every > 0 && spots_++ % options_.peer_every == 0) keep_for_peers(asked, overlap);
     const double cold_ms = thread_cpu_ms();
-    SpotReply cold =
-        options_.evidence ? weighed(alone, *d.searching, false, overlap, asked) : localizer_.locate(alone);
+    SpotReply cold = localizer_.locate(alone);
     const double live_ms = thread_cpu_ms();
-    SpotReply live = options_.evidence ? weighed(asked.request, *d.live, true, overlap, asked)
-                                       : localizer_.locate(asked.request);
+    SpotReply live = localizer_.locate(asked.request);
     const double done_ms = thread_cpu_ms();
+    if (options_.evidence) {
+      weigh(alone, d, overlap, asked);
+      weigh(asked.request, d, overlap, asked);
+    }
     d.engine.add_reply(live);
     add_row(std::move(cold), true, live_ms - cold_ms, overlap, asked);
     add_row(std::move(live), false, done_ms - live_ms, overlap, asked);
@@ -141,21 +143,24 @@ class Trial {
                                 asked.T_map_sensor_true, overlap, result_.rows.size()});
   }
 
-  /// The session's answer; what it rested on is kept.
-  SpotReply weighed(const SpotRequest& request, Session& session, bool live, double overlap,
-                    const Asked& asked) {
+  /// Keeps what a session's answer rests on, when it believes nothing.
+  void weigh(const SpotRequest& request, Device& device, double overlap, const Asked& asked) {
     const auto snapshot = cloud_.nearest(request.match_stamp_ns());
-    if (!snapshot) return refusal(request, Reason::no_gpc, snapshot.error().message);
+    if (!snapshot) return;
     const auto spot = Spot::create(request, *snapshot, server_options_);
-    if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);
+    if (!spot) return;
+    if (!device.first_asked_ns) device.first_asked_ns = request.stamp_ns;
     SpotReply reply = refusal(request, Reason::none, "");
-    session.answer(request, *spot, &reply);
-    EvidenceRow row = against_truth(session.evidence(), asked.T_map_sensor_true);
-    row.seed = stage_.seed;
-    row.live = live;
-    row.overlap = overlap;
-    result_.evidence.push_back(std::move(row));
-    return reply;
+    device.doubting->answer(request, *spot, &reply);
+    Evidence evidence = device.doubting->evidence();
+    for (std::size_t i = 1; i < evidence.places.size(); ++i) {
+      const Pose& T = evidence.T_map_sensors[i];
+      evidence.places[i].sd_m =
+          PoseEstimate{T, pose_covariance((*spot)->problem().target, (*spot)->query(), T)}.sd_m();
+    }
+    result_.evidence.push_back({stage_.name, request.client_id, stage_.seed, request.cold,
+                                to_seconds(request.stamp_ns - *device.first_asked_ns), overlap,
+                                against_truth(evidence, asked.T_map_sensor_true), std::move(evidence)});
   }
 
   void add_row(SpotReply reply, bool cold, double cpu_ms, double overlap, const Asked& asked) {

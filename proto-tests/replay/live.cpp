@@ -19,8 +19,11 @@ FleetCommand fleet_command(const Recording& recording, const ReplayOptions& opti
   fleet.site_file = recording.root / "site.json";
   fleet.server_log = options.out / "server.log";
   const std::string voxel = fmt::format("{}", options.voxel_m), seed = fmt::format("{}", options.seed);
-  fleet.server_arguments = {"--voxel", voxel, "--method",   options.method,
-                            "--seed",  seed,  "--sampling", fmt::format("{}", options.sampling)};
+  fleet.server_arguments = {"--voxel",    voxel,
+                            "--method",   options.method,
+                            "--seed",     seed,
+                            "--sampling", fmt::format("{}", options.sampling),
+                            "--risk",     fmt::format("{}", options.risk)};
   fleet.server_arguments.insert(fleet.server_arguments.end(),
                                 {"--state", "none"});  // nothing from earlier replays
   for (const auto& [name, value] : {std::pair{"--verify", options.verify}, std::pair{"--icp", options.icp}})

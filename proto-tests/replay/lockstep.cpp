@@ -52,6 +52,7 @@ LocalizerOptions localizer_options(const ReplayOptions& options) {
   if (!options.icp.empty()) localizer.icp = *icp_from(options.icp);
   localizer.voxel_size_m = options.voxel_m;
   localizer.sampling = options.sampling;
+  localizer.risk = options.risk;
   localizer.seed = options.seed;
   localizer.threads = options.threads;
   return localizer;

@@ -18,6 +18,7 @@ struct ReplayOptions {
   std::string method = "liloc", local = "cloud", features = "fpfh";
   std::string verify, icp;  ///< empty: the method's own
   double sampling = 0.5;
+  double risk = 1e-3;                ///< with which a verified answer may be wrong
   std::vector<std::string> devices;  ///< ids to replay; empty: all of the recording
   bool cold = false;
   bool submap = true;                ///< requests carry what the device saw shortly before

@@ -51,6 +51,12 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       ->capture_default_str();
   method->add_option("--verify", raw.verify,
                      "tracks, paper (three equality checks) or none; else the method's own");
+  method
+      ->add_option(
+          "--risk", options.localizer.risk,
+          "An answer is verified where it is wrong (over 10 deg or 0.3 m) with at most this probability")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
   method->add_option("--icp", raw.icp,
                      "Last refinement: plane, or point as in the paper; else the method's own");
   method->add_option("--sampling", options.localizer.sampling, "Share of points with features that RANSAC uses")

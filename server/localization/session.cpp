@@ -8,6 +8,7 @@
 
 #include "common/registration/pose_covariance.hpp"
 #include "common/registration/settle.hpp"
+#include "server/localization/advice.hpp"
 
 namespace liloc {
 namespace {
@@ -30,15 +31,6 @@ PoseEstimate estimate_of(const Spot& spot, const Hypothesis& hypothesis) {
   return {T, pose_covariance(spot.problem().target, spot.query(), T)};
 }
 
-/// Of the best of a spot's hypotheses against the others, by that spot alone.
-double log_odds_alone(const std::vector<Hypothesis>& found, const TrackOptions& options) {
-  std::vector<double> evidence;
-  for (const Hypothesis& h : found)
-    if (evidence.empty() || is_somewhere(h.judgement, options.belief))
-      evidence.push_back(evidence_of(h.judgement, fits(h, options), options.belief));
-  return log_odds_of(0, evidence, options.belief);
-}
-
 /// Whether refinement has left the prediction by more than chance and the judge sees no reason for it: surfaces
 /// that hardly hold a pose let it slide.
 bool idly_elsewhere(const Spot& spot, const Hypothesis& here, const PoseEstimate& seen,
@@ -49,6 +41,25 @@ bool idly_elsewhere(const Spot& spot, const Hypothesis& here, const PoseEstimate
   return here.judgement.score < stayed.score + SettleOptions{}.as_good;
 }
 
+/// How much of a view is new after a motion, 0..1.
+double novelty_of(const Pose& motion, const PlaceGate& view) {
+  const auto square = [](double x) { return x * x; };
+  return 1 - std::exp(-square(motion.translation().norm() / view.distance_m) -
+                      square(angle_between_rad(Pose::Identity(), motion) / view.angle_rad));
+}
+
+void advise(const Advised& advised, SpotReply* reply) {
+  reply->advice = advised.advice;
+  reply->text = advised.text + "; " + reply->text;
+}
+
+void refuse(const Advised& advised, SpotReply* reply) {
+  reply->status = SpotStatus::refused;
+  reply->reason = Reason::not_found;
+  reply->advice = advised.advice;
+  reply->text = advised.text;
+}
+
 void conclude(SpotStatus status, Reason reason, SpotReply* reply) {
   reply->status = status;
   reply->reason = reason;
@@ -56,150 +67,151 @@ void conclude(SpotStatus status, Reason reason, SpotReply* reply) {
 
 }  // namespace
 
-void Session::start_segment(std::uint32_t segment) {
-  segment_ = segment;
-  started_ = true;
-  tracks_.clear();
-  own_answers_.clear();
-  estimate_.reset();
-  weak_in_a_row_ = spots_since_search_ = 0;
-  followed_ = doubted_ = false;
-}
-
 void Session::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  evidence_ = {};
   if (request.cold) return answer_cold(spot, reply);
-  if (!started_ || request.odom_segment != segment_) start_segment(request.odom_segment);
+  if (!segment_ || request.odom_segment != segment_->id) segment_.emplace(request.odom_segment, verify_.tracks);
   if (options_.verify_or_default() != Verify::tracks) return answer_as_paper(spot, reply);
-  if (estimate_) return answer_tracking(request, spot, reply);
+  if (segment_->followed) return answer_following(request, spot, reply);
   answer_searching(spot, reply);
 }
 
-void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
-  const auto found = search(*spot, options_);
-  if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
-  evidence_ = {};
-  evidence_.own = found.front();
-  evidence_.own_estimate = estimate_of(*spot, found.front());
-  evidence_.own_log_odds = log_odds_alone(found, verify_.tracks);
-  evidence_.margin = margin_of(found);
-  report(found.front(), evidence_.own_estimate, evidence_.margin, reply);
-  if (options_.verify_or_default() != Verify::tracks || !conclusive(evidence_, verify_))
-    return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
-  reply->T_map_odom = evidence_.own_estimate.T_map_sensor * spot->T_odom_sensor().inverse();
-  conclude(SpotStatus::verified, Reason::conclusive, reply);
-}
-
-/// All that the newest spot and the ones before it say of the best track.
-Evidence Session::gathered(const Spot& spot, const std::vector<Hypothesis>& found) const {
-  const Track& best = tracks_.best_first().front();
-  Evidence e;
-  e.own = found.front();
-  e.own_estimate = estimate_of(spot, found.front());
-  e.own_log_odds = log_odds_alone(found, verify_.tracks);
-  e.margin = margin_of(found);
-  e.best = best.latest;
-  e.best_estimate = estimate_of(spot, best.latest);
-  e.stayed = best.fits;
-  e.log_odds = tracks_.log_odds();
-  e.spots = tracks_.spots();
-  return e;
-}
-
-/// Searches the whole room from this spot and lets all tracks weigh it; locks on and returns why once that is
-/// safe. `evidence_` tells what was found. `followed`: what a verified pose looks like here; it competes.
-std::optional<Reason> Session::search_room(const std::shared_ptr<const Spot>& spot,
-                                           const std::optional<Hypothesis>& followed) {
+/// Searches the whole room from this spot and lets all tracks weigh it. `followed`: what a believed pose looks
+/// like here; it competes. Empty: nothing was found.
+std::optional<Session::Found> Session::search_room(const std::shared_ptr<const Spot>& spot, Tracks* tracks,
+                                                   const Hypothesis* followed) {
   std::vector<Hypothesis> found = search(*spot, options_);
-  spots_since_search_ = 0;
-  evidence_ = {};
   if (found.empty()) return std::nullopt;
-  last_margin_ = margin_of(found);
+  const double margin = margin_of(found);
+  const Pose own = found.front().T_map_sensor();
   const auto known = [&](const Hypothesis& h) {
     return same_place(h.T_map_sensor(), followed->T_map_sensor());
   };
-  if (followed && std::ranges::none_of(found, known)) found.push_back(*followed);
-  tracks_.add(spot, found);
-  evidence_ = gathered(*spot, found);
-  const bool elsewhere =
-      estimate_ && !same_place(evidence_.best_estimate.T_map_sensor, estimate_->T_map_sensor);
-  if (!confirmed(evidence_, verify_) || (elsewhere && !followed_ && !doubted_)) return std::nullopt;
-  // A track that holds has more behind it than this spot's own search; elsewhere, the search is right.
-  if (!followed_ || elsewhere) estimate_ = evidence_.best_estimate;
-  T_odom_sensor_ = spot->T_odom_sensor();
-  weak_in_a_row_ = 0;
-  if (tracks_.spots() == 1) return Reason::conclusive;
-  const bool own = same_place(evidence_.own->T_map_sensor(), evidence_.best->T_map_sensor());
-  return own ? Reason::confirmed : Reason::corrected;
+  if (followed != nullptr && std::ranges::none_of(found, known)) found.push_back(*followed);
+  tracks->add(spot, found);
+  const Track& best = tracks->best_first().front();
+  Found result;
+  result.best = best.latest;
+  result.stayed = best.fits;
+  result.estimate = estimate_of(*spot, best.latest);
+  if (!result.stayed) result.estimate.T_map_sensor = best.T_map_odom * spot->T_odom_sensor();
+  result.margin = margin;
+  result.own = same_place(own, result.estimate.T_map_sensor);
+  evidence_.places = tracks->evidence(result.estimate.sd_m());
+  for (const Track& track : tracks->best_first())
+    evidence_.T_map_sensors.push_back(track.T_map_odom * spot->T_odom_sensor());
+  result.looks = evidence_.places.front().looks;
+  result.log_odds = evidence_.log_odds = log_odds_of(evidence_.places);
+  return result;
+}
+
+void Session::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  Tracks alone(verify_.tracks);
+  const auto found = search_room(spot, &alone);
+  if (!found) return refuse(advice_for(evidence_, {}), reply);
+  reply->confidence = probability_of(found->log_odds);
+  report(found->best, found->estimate, found->margin, reply);
+  if (options_.verify_or_default() != Verify::tracks || !enough(reply->confidence)) {
+    advise(advice_for(evidence_, found->best.judgement), reply);
+    return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  }
+  reply->T_map_odom = found->estimate.T_map_sensor * spot->T_odom_sensor().inverse();
+  conclude(SpotStatus::verified, Reason::conclusive, reply);
 }
 
 void Session::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
-  const auto why = search_room(spot);
-  if (!evidence_.best) return conclude(SpotStatus::refused, Reason::not_found, reply);
-  if (why || evidence_.stayed)
-    report(*evidence_.best, evidence_.best_estimate, last_margin_, reply);
-  else
-    report(*evidence_.own, evidence_.own_estimate, last_margin_, reply);
-  if (why) {
-    reply->T_map_odom = estimate_->T_map_sensor * T_odom_sensor_.inverse();
-    return conclude(SpotStatus::verified, *why, reply);
+  const auto found = search_room(spot, &segment_->tracks);
+  segment_->spots_since_search = 0;
+  if (!found) return refuse(advice_for(evidence_, {}), reply);
+  report(found->best, found->estimate, found->margin, reply);
+  reply->confidence = probability_of(found->log_odds);
+  if (found->stayed && enough(reply->confidence)) {
+    segment_->followed = begun(found->estimate, spot->T_odom_sensor(), found->log_odds, found->looks);
+    segment_->weak_in_a_row = 0;
+    reply->T_map_odom = found->estimate.T_map_sensor * spot->T_odom_sensor().inverse();
+    return conclude(SpotStatus::verified,
+                    segment_->tracks.searches() == 1 ? Reason::conclusive
+                    : found->own                     ? Reason::confirmed
+                                                     : Reason::corrected,
+                    reply);
   }
-  const bool few = tracks_.spots() < verify_.spots;
+  const Advised advised = advice_for(evidence_, found->best.judgement);
+  advise(advised, reply);
   conclude(SpotStatus::provisional,
-           few                       ? Reason::awaiting_spots
-           : led(evidence_, verify_) ? Reason::inconsistent
-                                     : Reason::ambiguous,
+           advised.advice == Advice::wait ? Reason::awaiting_spots
+           : !found->own                  ? Reason::inconsistent
+                                          : Reason::ambiguous,
            reply);
 }
 
-/// Refines the predicted pose and weighs the two; true when that verifies it. Where free space contradicts the
-/// refinement the prediction is the better answer.
-bool Session::follow(const SpotRequest& request, const Spot& spot, SpotReply* reply) {
-  const Pose T_before_now = T_odom_sensor_.inverse() * request.T_odom_sensor;
-  T_odom_sensor_ = request.T_odom_sensor;
-  estimate_ = carried(*estimate_, T_before_now, std::max(request.odom_sd_rad, verify_.step_sd_rad),
-                      std::max(request.odom_sd_m, verify_.step_sd_m));
-  const Pose predicted = estimate_->T_map_sensor;
+/// Refines the predicted pose and weighs the two; what the spot then shows there. Where free space contradicts
+/// the refinement the prediction is the better answer.
+Hypothesis Session::follow(const SpotRequest& request, const Spot& spot) {
+  Followed& followed = *segment_->followed;
+  const Pose T_before_now = followed.T_odom_sensor.inverse() * request.T_odom_sensor;
+  const double novelty = novelty_of(T_before_now, verify_.tracks.view);
+  followed.T_odom_sensor = request.T_odom_sensor;
+  followed.estimate =
+      carried(followed.estimate, T_before_now, std::max(request.odom_sd_rad, verify_.step_sd_rad),
+              std::max(request.odom_sd_m, verify_.step_sd_m));
+  const Pose predicted = followed.estimate.T_map_sensor;
   // The prior holds what no surface shows and hardly weighs otherwise: the filter weighs afterwards.
-  const PosePrior prior{predicted, std::max(estimate_->sd_rad(), verify_.locked_sd_rad),
-                        std::max(estimate_->sd_m(), verify_.locked_sd_m), verify_.prior_residual_sd_m};
+  const PosePrior prior{predicted, std::max(followed.estimate.sd_rad(), verify_.locked_sd_rad),
+                        std::max(followed.estimate.sd_m(), verify_.locked_sd_m), verify_.prior_residual_sd_m};
+  const auto stays = [&](const Hypothesis& h) {
+    return same_place(h.T_map_sensor(), predicted, verify_.tracks.gate);
+  };
   Hypothesis here = refine_and_judge(spot.problem(), predicted, &prior);
-  evidence_ = {};
-  evidence_.best = here;
-  evidence_.stayed = same_place(here.T_map_sensor(), predicted, verify_.tracks.gate);
-  if (!evidence_.stayed || contradicted(evidence_, verify_)) {
-    here = settle(spot.problem(), predicted, std::move(here));
-    evidence_.best = here;
-    evidence_.stayed = same_place(here.T_map_sensor(), predicted, verify_.tracks.gate);
-  }
-  if (follows(evidence_, verify_)) {
+  if (!stays(here) || !fits(here, verify_.tracks)) here = settle(spot.problem(), predicted, std::move(here));
+  const bool stayed = stays(here), fitting = stayed && fits(here, verify_.tracks);
+  note_look(terms_of(here.judgement, fitting), stayed, novelty, &followed);
+  if (fitting) {
     const PoseEstimate seen = estimate_of(spot, here);
-    if (!idly_elsewhere(spot, here, seen, *estimate_)) estimate_ = fused(*estimate_, seen);
+    if (!idly_elsewhere(spot, here, seen, followed.estimate))
+      followed.estimate = fused(followed.estimate, seen);
   }
-  evidence_.best_estimate = *estimate_;
-  report(here, *estimate_, last_margin_, reply);
-  return holds(evidence_, verify_);
+  return here;
 }
 
-void Session::answer_tracking(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                              SpotReply* reply) {
-  followed_ = follow(request, *spot, reply);
-  weak_in_a_row_ = followed_ ? 0 : weak_in_a_row_ + 1;
-  if (weak_in_a_row_ == 1) tracks_.clear();  // what odometry tied to the place before may be lost
-  doubted_ = contradicted(evidence_, verify_) || weak_in_a_row_ > verify_.patience;
-  conclude(followed_ ? SpotStatus::verified : SpotStatus::provisional,
-           followed_ ? Reason::confirmed : Reason::weak, reply);
-  // Now and then, and as soon as two spots in a row were weak, the whole room is searched again: a device that
-  // was lifted and put elsewhere must not be believed for long.
-  if (++spots_since_search_ >= verify_.research_every || weak_in_a_row_ >= 2) {
-    const Evidence followed = std::exchange(evidence_, {});
-    if (const auto why = search_room(spot, followed.best)) {
-      report(*evidence_.best, *estimate_, last_margin_, reply);
-      conclude(SpotStatus::verified, *why, reply);
-    } else {
-      evidence_ = followed;
-    }
-  }
-  if (reply->verified()) reply->T_map_odom = estimate_->T_map_sensor * T_odom_sensor_.inverse();
+void Session::report_followed(const Hypothesis& here, SpotReply* reply) const {
+  const Followed& followed = *segment_->followed;
+  report(here, followed.estimate, 0, reply);
+  reply->confidence = confidence_of(followed);
+  reply->T_map_odom.reset();
+  if (!enough(reply->confidence)) return conclude(SpotStatus::provisional, Reason::weak, reply);
+  reply->T_map_odom = followed.estimate.T_map_sensor * followed.T_odom_sensor.inverse();
+  conclude(SpotStatus::verified, Reason::confirmed, reply);
+}
+
+/// A search of the whole room beside a pose that is followed: a device that was lifted and put elsewhere must
+/// not be believed for long.
+void Session::search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here, SpotReply* reply) {
+  Followed& followed = *segment_->followed;
+  segment_->spots_since_search = 0;
+  const auto found = search_room(spot, &segment_->tracks, &here);
+  if (!found) return;
+  const bool elsewhere = !same_place(found->estimate.T_map_sensor, followed.estimate.T_map_sensor);
+  const bool weak = !reply->verified();
+  note_search(found->log_odds, elsewhere, &followed);
+  const bool moved = elsewhere && weak && found->stayed && enough(probability_of(found->log_odds));
+  if (moved) followed = begun(found->estimate, spot->T_odom_sensor(), found->log_odds, found->looks);
+  report_followed(moved ? found->best : here, reply);
+  reply->margin = found->margin;
+  if (moved && reply->verified()) reply->reason = Reason::corrected;
+}
+
+void Session::answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
+                               SpotReply* reply) {
+  const Hypothesis here = follow(request, *spot);
+  report_followed(here, reply);
+  int& weak_in_a_row = segment_->weak_in_a_row;
+  weak_in_a_row = reply->verified() ? 0 : weak_in_a_row + 1;
+  if (weak_in_a_row == 1) segment_->tracks.clear();  // what odometry tied to the place before may be lost
+  if (++segment_->spots_since_search >= verify_.research_every || weak_in_a_row >= 2)
+    search_beside(spot, here, reply);
+  if (reply->verified()) return;
+  advise(advice_for(evidence_, here.judgement), reply);
+  if (segment_->followed->log_odds < 0) segment_->followed.reset();  // likelier wrong than right
 }
 
 void Session::answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
@@ -211,10 +223,11 @@ void Session::answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply
     reply->T_map_odom = own.T_map_sensor * own.T_odom_sensor.inverse();
     return conclude(SpotStatus::verified, Reason::confirmed, reply);
   }
-  own_answers_.push_back(own);
-  if (own_answers_.size() > 3) own_answers_.pop_front();
-  if (own_answers_.size() < 3) return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
-  const Verification v = verify({own_answers_[0], own_answers_[1], own_answers_[2]}, verify_.equality);
+  auto& answers = segment_->own_answers;
+  answers.push_back(own);
+  if (answers.size() > 3) answers.pop_front();
+  if (answers.size() < 3) return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  const Verification v = verify({answers[0], answers[1], answers[2]}, verify_.equality);
   if (v.verdict == Verdict::none) return conclude(SpotStatus::provisional, Reason::inconsistent, reply);
   reply->T_map_odom = v.T_map_sensor[2] * own.T_odom_sensor.inverse();
   reply->T_map_sensor = v.T_map_sensor[2];

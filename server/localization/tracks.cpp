@@ -1,7 +1,7 @@
 #include "server/localization/tracks.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
 #include "common/registration/settle.hpp"
 
@@ -15,6 +15,22 @@ bool fits(const Hypothesis& hypothesis, const TrackOptions& options) {
   const Judgement& judgement = hypothesis.judgement;
   return judgement.agree >= options.fits_agree && judgement.overlap() >= options.fits_overlap &&
          judgement.map_agree >= options.fits_map_agree && bound_share(hypothesis) >= options.fits_bound;
+}
+
+std::vector<double> weights_of(const std::vector<Pose>& T_odom_sensors, const PlaceGate& view) {
+  const auto square = [](double x) { return x * x; };
+  std::vector<double> weights;
+  double sum = 0;
+  for (const Pose& spot : T_odom_sensors) {
+    double alike = 0;
+    for (const Pose& other : T_odom_sensors)
+      alike += std::exp(-square(distance_m(spot, other) / view.distance_m) -
+                        square(angle_between_rad(spot, other) / view.angle_rad));
+    weights.push_back(1 / alike);
+    sum += weights.back();
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
 }
 
 void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found,
@@ -39,7 +55,8 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
                             2 * spot.problem().judging.fine_tolerance_m);
   track->latest = *here;
   track->fits = stayed && liloc::fits(*here, options_);
-  track->evidence.push_back(evidence_of(here->judgement, track->fits, options_.belief));
+  track->looks.push_back(terms_of(here->judgement, track->fits));
+  track->surfaces.add(spot.problem().target, spot.query(), stayed ? here->T_map_sensor() : predicted);
 }
 
 Track Tracks::founded(const Hypothesis& hypothesis) const {
@@ -54,35 +71,53 @@ Track Tracks::founded(const Hypothesis& hypothesis) const {
   }
   track.latest = hypothesis;
   track.fits = liloc::fits(hypothesis, options_);
-  track.evidence.push_back(evidence_of(hypothesis.judgement, track.fits, options_.belief));
+  track.looks.push_back(terms_of(hypothesis.judgement, track.fits));
+  track.surfaces.add(newest.problem().target, newest.query(), hypothesis.T_map_sensor());
   return track;
 }
 
-double Tracks::total(const Track& track) const {
-  return std::inner_product(weights_.begin(), weights_.end(), track.evidence.begin(), 0.0);
+PlaceEvidence Tracks::evidence_of(const Track& track) const {
+  PlaceEvidence evidence;
+  evidence.searches = static_cast<double>(searches_.size());
+  evidence.agreeing = static_cast<double>(std::ranges::count_if(searches_, [&](const Searched& search) {
+    return same_place(track.T_map_odom * search.T_odom_sensor, search.T_map_sensor, options_.agreement);
+  }));
+  for (std::size_t i = 0; i < track.looks.size(); ++i) evidence.looks.add(track.looks[i], weights_[i]);
+  evidence.bits = track.surfaces.sum();
+  return evidence;
+}
+
+std::vector<PlaceEvidence> Tracks::evidence(double sd_m) const {
+  std::vector<PlaceEvidence> all;
+  for (const Track& track : tracks_) all.push_back(evidence_of(track));
+  if (!all.empty()) all.front().sd_m = sd_m;
+  return all;
 }
 
 void Tracks::prune() {
-  std::stable_sort(tracks_.begin(), tracks_.end(),
-                   [this](const Track& a, const Track& b) { return total(a) > total(b); });
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) order.emplace_back(-standing_of(evidence_of(tracks_[i])), i);
+  std::ranges::sort(order);
   const Pose& T_odom_sensor = spots_.back()->T_odom_sensor();
   const PlaceGate wide{2 * options_.gate.distance_m, 2 * options_.gate.angle_rad};
   std::vector<Track> kept;
-  for (Track& track : tracks_)
-    if (kept.size() < options_.most_tracks && std::none_of(kept.begin(), kept.end(), [&](const Track& k) {
-          return same_place(k.T_map_odom * T_odom_sensor, track.T_map_odom * T_odom_sensor, wide);
+  for (const auto& [standing, i] : order) {
+    const Pose here = tracks_[i].T_map_odom * T_odom_sensor;
+    if (kept.size() < options_.most_tracks && std::ranges::none_of(kept, [&](const Track& k) {
+          return same_place(k.T_map_odom * T_odom_sensor, here, wide);
         }))
-      kept.push_back(std::move(track));
+      kept.push_back(std::move(tracks_[i]));
+  }
   tracks_ = std::move(kept);
 }
 
 /// Of the oldest spot that sees what a newer one sees as well, or simply the oldest.
 void Tracks::forget_one() {
   const auto repeated = [this](std::size_t i) {
-    return std::any_of(
-        spots_.begin() + static_cast<std::ptrdiff_t>(i) + 1, spots_.end(), [&](const auto& later) {
-          return same_place(spots_[i]->T_odom_sensor(), later->T_odom_sensor(), options_.belief.view);
-        });
+    return std::any_of(spots_.begin() + static_cast<std::ptrdiff_t>(i) + 1, spots_.end(),
+                       [&](const auto& later) {
+                         return same_place(spots_[i]->T_odom_sensor(), later->T_odom_sensor(), options_.view);
+                       });
   };
   std::ptrdiff_t out = 0;
   for (std::size_t i = 0; i < spots_.size(); ++i)
@@ -91,7 +126,7 @@ void Tracks::forget_one() {
       break;
     }
   spots_.erase(spots_.begin() + out);
-  for (Track& track : tracks_) track.evidence.erase(track.evidence.begin() + out);
+  for (Track& track : tracks_) track.looks.erase(track.looks.begin() + out);
 }
 
 void Tracks::add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypothesis>& found) {
@@ -99,24 +134,21 @@ void Tracks::add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypo
   if (spots_.size() > options_.memory) forget_one();
   std::vector<Pose> T_odom_sensors;
   for (const auto& known : spots_) T_odom_sensors.push_back(known->T_odom_sensor());
-  weights_ = weights_of(T_odom_sensors, options_.belief);
+  weights_ = weights_of(T_odom_sensors, options_.view);
+  searches_.push_back({spot->T_odom_sensor(), found.front().T_map_sensor()});
+  if (searches_.size() > options_.searches) searches_.pop_front();
   std::vector<bool> taken(found.size(), false);
   for (Track& track : tracks_) extend(&track, *spot, found, &taken);
   for (std::size_t i = 0; i < found.size(); ++i)
-    if (!taken[i] && (tracks_.empty() || is_somewhere(found[i].judgement, options_.belief)))
+    if (!taken[i] && (tracks_.empty() || found[i].judgement.agree >= options_.somewhere))
       tracks_.push_back(founded(found[i]));
   prune();
 }
 
 void Tracks::clear() {
   spots_.clear();
+  searches_.clear();
   tracks_.clear();
-}
-
-double Tracks::log_odds() const {
-  std::vector<double> evidence;
-  for (const Track& track : tracks_) evidence.push_back(total(track));
-  return log_odds_of(0, evidence, options_.belief);
 }
 
 }  // namespace liloc

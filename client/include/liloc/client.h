@@ -135,6 +135,9 @@ typedef struct liloc_reply {
   liloc_pose T_map_sensor;
   double covariance[36]; /* of T_map_sensor, row-major, sensor frame, [rad; m] */
   double latency_ms;     /* on the server */
+  double confidence;     /* probability that T_map_sensor is within 10 degrees and 0.3 m of the truth */
+  const char* advice;    /* what would help where it is not verified: wait, turn_around, move_on, more_coverage,
+                            twin or clear_view; none where nothing would */
 } liloc_reply;
 
 typedef struct liloc_stats {

@@ -116,6 +116,11 @@ struct Reply {
   std::optional<Pose> T_map_sensor;     ///< the server's own best answer for that frame
   std::array<double, 36> covariance{};  ///< of T_map_sensor, row-major, sensor frame, [rad; m]
   double latency_ms = 0;                ///< on the server
+  /// Probability that T_map_sensor is within 10 degrees and 0.3 m of the truth; `verified` is a threshold on
+  /// it.
+  double confidence = 0;
+  std::string advice;  ///< what would help where it is not verified: wait, turn_around, move_on, more_coverage,
+                       ///< twin or clear_view; none where nothing would
 };
 
 struct Stats {

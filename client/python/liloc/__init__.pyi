@@ -89,6 +89,12 @@ class Reply:
     @property
     def latency_ms(self) -> float:
         """On the server."""
+    @property
+    def confidence(self) -> float:
+        """Probability that T_map_sensor is within 10 degrees and 0.3 m of the truth."""
+    @property
+    def advice(self) -> str:
+        """What would help where it is not verified: wait, turn_around, move_on, more_coverage, twin, clear_view."""
 
 class Stats:
     @property

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "proto-tests/bench/spot_bench_pairs.hpp"
 #include "proto-tests/bench/spot_bench_tables.hpp"
@@ -35,13 +37,6 @@ TEST(SpotBenchSites, AHundredSeedsSpanTheSizesAndCrowdsThatAreAskedFor) {
   EXPECT_EQ(most_people, 12);
 }
 
-/// Whether the session's rules, at their defaults, verify what this row rests on.
-bool verified(const EvidenceRow& row) {
-  const VerifyOptions options;
-  if (row.followed()) return holds(row.evidence, options);
-  return confirmed(row.evidence, options);
-}
-
 /// A corridor that looks nearly the same after half a turn, two offices and a hall. The laws have room for
 /// other sites; the first fails when covariances are off by a factor of two.
 class SpotBench : public testing::Test {
@@ -74,31 +69,29 @@ TEST_F(SpotBench, NoVerifiedAnswerIsWrong) {
         << "seed " << row.seed << " seq " << row.reply.seq << " off by " << row.error_m << " m";
 }
 
-TEST_F(SpotBench, EvidenceJudgedAgainGivesTheAnswersOfTheSession) {
-  std::size_t i = 0;
+TEST_F(SpotBench, EvidenceTellsOfEverySearchAndItsModelIsTheSessions) {
+  ASSERT_EQ(all.evidence.size(), all.rows.size()) << "a cold search and one with history";
   for (const EvidenceRow& row : all.evidence) {
-    const Row& answer = all.rows[i++];
-    if (!row.live) continue;
-    EXPECT_EQ(verified(row), answer.reply.verified()) << "row " << i;
+    ASSERT_EQ(row.right.size(), row.evidence.places.size());
+    if (row.evidence.places.empty()) continue;
+    EXPECT_DOUBLE_EQ(row.evidence.log_odds, log_odds_of(row.evidence.places));
+    EXPECT_LE(std::ranges::count(row.right, true), 1) << "places are apart";
   }
-  EXPECT_EQ(i, all.rows.size());
 }
 
-TEST_F(SpotBench, EvidenceSurvivesAFile) {
-  const std::string path = testing::TempDir() + "spot_bench_evidence.txt";
+TEST_F(SpotBench, EvidenceIsATableWithALinePerPlace) {
+  const std::string path = testing::TempDir() + "spot_bench_evidence.csv";
   ASSERT_TRUE(write_evidence(path, all.evidence));
-  const auto read = read_evidence(path);
-  ASSERT_TRUE(read) << read.error().message;
-  ASSERT_EQ(read->size(), all.evidence.size());
-  for (std::size_t i = 0; i < read->size(); ++i) {
-    EXPECT_EQ(verified((*read)[i]), verified(all.evidence[i])) << "row " << i;
-    EXPECT_EQ((*read)[i].best_right, all.evidence[i].best_right) << "row " << i;
-  }
+  std::size_t places = 0, lines = 0;
+  for (const EvidenceRow& row : all.evidence) places += row.evidence.places.size();
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) ++lines;
+  EXPECT_EQ(lines, places + 1);
   std::filesystem::remove(path);
+  EXPECT_THAT(write_evidence("/nowhere/rows.csv", {}).error().message, HasSubstr("/nowhere/rows.csv"));
 }
 
 TEST(SpotBenchFiles, ErrorsSayWhatToDo) {
-  EXPECT_THAT(read_evidence("/nowhere").error().message, HasSubstr("--evidence"));
   EXPECT_THAT(run_pairs({"/nowhere", 1, 0}).error().message, HasSubstr("gt.log"));
 }
 

@@ -81,9 +81,11 @@ int main(int argc, char** argv) {
   CLI::App app{"Cost of the room's indices where it changes, against building them anew"};
   std::vector<std::string> recordings;
   std::vector<std::uint64_t> seeds;
+  bench::SiteStyle style;
   double seconds = 14, skip_s = 5;
   app.add_option("recordings", recordings, "folders of recordings");
   app.add_option("--seeds", seeds, "simulated sites as in liloc_spot_bench");
+  app.add_option("--world", style.world, "of the simulated sites: 1 or 2");
   app.add_option("--seconds", seconds, "of each simulated site");
   app.add_option("--skip-seconds", skip_s, "left out at the start, while everything is new");
   CLI11_PARSE(app, argc, argv);
@@ -97,6 +99,6 @@ int main(int argc, char** argv) {
                bench::median(c.from_before_ms), bench::median(c.ratio));
   };
   for (const std::string& folder : recordings) print(bench::recorded_stage(folder));
-  for (const std::uint64_t seed : seeds) print(bench::simulated_stage(seed, seconds));
+  for (const std::uint64_t seed : seeds) print(bench::simulated_stage(seed, seconds, style));
   return 0;
 }

@@ -70,6 +70,17 @@ Status run(Options options) {
   return {};
 }
 
+void add_sensor(CLI::App& app, const std::string& name, sim::SensorModel& model) {
+  app.add_option_function<std::string>(
+      name,
+      [&model](const std::string& text) {
+        const auto named = sim::sensor_model_of(text);
+        if (!named) throw CLI::ValidationError(named.error().message);
+        model = *named;
+      },
+      "Of the simulated sites: l515 (default), l515-real, kinect or tof");
+}
+
 void declare(CLI::App& app, Options& options) {
   SpotsOptions& spots = options.spots;
   app.add_option("--sites", options.sites,
@@ -79,6 +90,11 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--seconds", spots.seconds, "Simulated per site")
       ->check(CLI::Range(2, 600))
       ->capture_default_str();
+  app.add_option("--world", spots.style.world, "Whose furniture, people and mounts: 1 or 2")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  add_sensor(app, "--lidar-sensor", spots.style.lidar_sensor);
+  add_sensor(app, "--device-sensor", spots.style.device_sensor);
   app.add_option("--recordings", spots.recordings, "Folders of recordings");
   app.add_option("--jobs", spots.jobs, "Sites at a time; each runs in one thread")
       ->check(CLI::Range(1, 64))

@@ -16,6 +16,8 @@ namespace {
 using sim::SiteKind;
 
 constexpr double kFloorPerLidar_m2 = 25, kNarrowest_m = 2.2;
+// World 2 as recordings/hall-sparse (48 m2 a LiDAR) and hall-crowded (35): offices and halls, two to four.
+constexpr double kOtherLow_m2 = 30, kOtherHigh_m2 = 60;
 
 struct KindOfSite {
   SiteKind kind;
@@ -56,7 +58,7 @@ struct Reader {
 
 }  // namespace
 
-sim::SimOptions site_options(std::uint64_t seed, double seconds) {
+sim::SimOptions site_options(std::uint64_t seed, double seconds, const SiteStyle& style) {
   const KindOfSite& kind = kKinds[seed % kKinds.size()];
   sim::Random random(seed, 900);
   sim::SimOptions o;
@@ -73,11 +75,19 @@ sim::SimOptions site_options(std::uint64_t seed, double seconds) {
   o.device_kind = random.chance(0.25) ? sim::DeviceKind::robot : sim::DeviceKind::carried;
   o.seconds = seconds;
   o.still_seconds = 1;
+  o.world = style.world;
+  o.lidar_sensor = style.lidar_sensor;
+  o.device_sensor = style.device_sensor;
+  if (o.world == 2) {
+    const double each_m2 = random.uniform(kOtherLow_m2, kOtherHigh_m2);
+    o.lidars = std::clamp(static_cast<int>(std::lround(floor_m2 / each_m2)), 2, 4);
+    o.clutter = random.uniform(0.15, 2.0);
+  }
   return o;
 }
 
-Result<Stage> simulated_stage(std::uint64_t seed, double seconds) {
-  const sim::SimOptions options = site_options(seed, seconds);
+Result<Stage> simulated_stage(std::uint64_t seed, double seconds, const SiteStyle& style) {
+  const sim::SimOptions options = site_options(seed, seconds, style);
   auto created = sim::Simulation::create(options);
   if (!created) return tl::unexpected(created.error());
   auto simulation = std::make_shared<sim::Simulation>(std::move(*created));

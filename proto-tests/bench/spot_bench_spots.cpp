@@ -15,7 +15,7 @@ namespace {
 Result<Stage> open_stage(const SpotsOptions& options, std::size_t index) {
   if (!options.recordings.empty()) return recorded_stage(options.recordings[index]);
   const std::uint64_t seed = options.first_seed + index;
-  auto stage = simulated_stage(seed, options.seconds);
+  auto stage = simulated_stage(seed, options.seconds, options.style);
   return stage ? std::move(stage) : fail("site of seed {}: {}", seed, stage.error().message);
 }
 

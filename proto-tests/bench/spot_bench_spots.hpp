@@ -11,6 +11,7 @@ struct SpotsOptions {
   int sites = 0;  ///< simulated, by rising seeds
   std::uint64_t first_seed = 1;
   double seconds = 12;                  ///< simulated per site
+  SiteStyle style;                      ///< of the simulated sites
   std::vector<std::string> recordings;  ///< folders, in place of simulated sites
   int jobs = 1;                         ///< sites at a time
   bool verbose = false;                 ///< print every spot

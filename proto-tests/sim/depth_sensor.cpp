@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "proto-tests/sim/random.hpp"
+#include "proto-tests/sim/sensor_models.hpp"
 
 namespace liloc::sim {
 namespace {
@@ -74,7 +75,9 @@ void cover_by_hand(View& view, const Camera& camera, double time_s) {
     }
 }
 
-DepthImage sense(const View& view, const DepthSensor& sensor, std::uint64_t key, StampNs stamp_ns) {
+namespace {
+
+DepthImage sense_l515(const View& view, const DepthSensor& sensor, std::uint64_t key, StampNs stamp_ns) {
   const Camera& camera = sensor.camera;
   DepthImage image{stamp_ns, camera.width, camera.height, std::vector<std::uint16_t>(view.depth_m.size(), 0)};
   const auto unit = static_cast<float>(1.0 / camera.depth_scale_m), noise = static_cast<float>(sensor.noise);
@@ -100,6 +103,22 @@ DepthImage sense(const View& view, const DepthSensor& sensor, std::uint64_t key,
     }
   }
   return image;
+}
+
+}  // namespace
+
+DepthImage sense(const View& view, const DepthSensor& sensor, std::uint64_t key, StampNs stamp_ns) {
+  switch (sensor.model) {
+    case SensorModel::l515_real:
+      return sense_l515_real(view, sensor, key, stamp_ns);
+    case SensorModel::kinect:
+      return sense_kinect(view, sensor, key, stamp_ns);
+    case SensorModel::tof:
+      return sense_tof(view, sensor, key, stamp_ns);
+    case SensorModel::l515:
+      break;
+  }
+  return sense_l515(view, sensor, key, stamp_ns);
 }
 
 }  // namespace liloc::sim

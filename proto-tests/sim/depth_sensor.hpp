@@ -1,6 +1,7 @@
 #pragma once
-// What a solid-state LiDAR makes of a view: noise, dropouts, flying pixels, whole units.
+// What a depth sensor makes of a view: noise, dropouts, flying pixels, whole units.
 #include "common/geometry/camera.hpp"
+#include "proto-tests/sim/options.hpp"
 #include "proto-tests/sim/ray_caster.hpp"
 
 namespace liloc::sim {
@@ -10,6 +11,7 @@ struct DepthSensor {
   double nearest_m = 0.2;  ///< along the ray
   double range_m = 9;      ///< along the ray
   double noise = 1;        ///< 0: exact
+  SensorModel model = SensorModel::l515;
 };
 
 /// A hand in front of the sensor: an uneven, tilted surface 0.25 m away that covers most of the view.

@@ -10,8 +10,9 @@ namespace liloc::sim {
 
 enum class Material : std::uint8_t {
   matte,
-  dark,   ///< weak return: more noise, more dropouts
-  glass,  ///< mostly no return
+  dark,    ///< weak return: more noise, more dropouts
+  glass,   ///< mostly no return
+  carpet,  ///< a dark floor: lost to some sensors, as good as matte to the default one
 };
 
 struct Mesh {

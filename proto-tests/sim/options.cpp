@@ -32,6 +32,7 @@ Result<SimOptions> SimOptions::validated() const {
                              Range{"people", double(people), 0, 30},
                              Range{"moved_items", double(moved_items), -1, 50},
                              Range{"pushed_items", double(pushed_items), -1, 50},
+                             Range{"world", double(world), 1, 2},
                              Range{"lidars", double(lidars), 1, 8},
                              Range{"lidar_rate_hz", lidar_rate_hz, 0.5, 60},
                              Range{"lidar_range_m", lidar_range_m, 1, 60},
@@ -72,6 +73,14 @@ Result<DeviceKind> device_kind_of(std::string_view name) {
   if (name == "carried") return DeviceKind::carried;
   if (name == "robot") return DeviceKind::robot;
   return fail("sim.device_kind is '{}'; must be carried or robot", name);
+}
+
+Result<SensorModel> sensor_model_of(std::string_view name) {
+  if (name == "l515") return SensorModel::l515;
+  if (name == "l515-real") return SensorModel::l515_real;
+  if (name == "kinect") return SensorModel::kinect;
+  if (name == "tof") return SensorModel::tof;
+  return fail("sim: no sensor is called '{}'; must be l515, l515-real, kinect or tof", name);
 }
 
 }  // namespace liloc::sim

@@ -19,10 +19,19 @@ enum class DeviceKind {
   robot,    ///< fixed height 0.8 m, slow, turns before it drives
 };
 
+/// Which sensor a LiDAR or a device behaves as. SENSORS.md says what each was fitted to.
+enum class SensorModel {
+  l515,       ///< a well-behaved solid-state LiDAR: few losses, even noise
+  l515_real,  ///< as two real ones were measured: a third of the pixels, speckle, no dark floor
+  kinect,     ///< structured light
+  tof,        ///< time of flight, as an Azure Kinect
+};
+
 /// What `liloc sim` can be asked for. Every default works; lengths in metres, times in seconds since the start.
 struct SimOptions {
   std::uint64_t seed = 1;  ///< everything follows from it: the same options give the same recording
   SiteKind kind = SiteKind::office;
+  int world = 1;  ///< whose furniture, people and LiDAR mounts: 1, or 2 as another simulator would draw them
   double width_m = 0, depth_m = 0, height_m = 0;  ///< of the site; 0: drawn by the seed near the kind's size
   double clutter = 1;     ///< scales how much furniture stands about; 0: pillars and partitions alone
   int people = 2;         ///< walking about, without those who carry devices (0..30)
@@ -32,6 +41,7 @@ struct SimOptions {
   int lidars = 3;  ///< ceiling LiDARs (1..8)
   double lidar_rate_hz = 6;
   double lidar_range_m = 9;
+  SensorModel lidar_sensor = SensorModel::l515, device_sensor = SensorModel::l515;
 
   int devices = 1;  ///< 0..16
   DeviceKind device_kind = DeviceKind::carried;
@@ -63,5 +73,7 @@ struct SimOptions {
 
 [[nodiscard]] Result<SiteKind> site_kind_of(std::string_view name);      ///< by the enumerator's name
 [[nodiscard]] Result<DeviceKind> device_kind_of(std::string_view name);  ///< by the enumerator's name
+/// By its name in options: l515, l515-real, kinect or tof.
+[[nodiscard]] Result<SensorModel> sensor_model_of(std::string_view name);
 
 }  // namespace liloc::sim

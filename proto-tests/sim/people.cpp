@@ -49,7 +49,9 @@ Body Body::robot() {
 
 Pose Body::T_map_part(std::size_t part, const Pose& T_map_body, double stride_rad, double swing) const {
   Pose T_body_part = upright(joints_[part], 0);
-  T_body_part.rotate(Eigen::AngleAxisd(swings_rad_[part] * swing * std::sin(stride_rad), Vector3d::UnitY()));
+  const double rest_rad = rests_rad_.empty() ? 0 : rests_rad_[part];
+  T_body_part.rotate(
+      Eigen::AngleAxisd(rest_rad + swings_rad_[part] * swing * std::sin(stride_rad), Vector3d::UnitY()));
   return T_map_body * T_body_part;
 }
 

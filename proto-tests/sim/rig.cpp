@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "proto-tests/sim/inertial.hpp"
+#include "proto-tests/sim/other_world.hpp"
 
 namespace liloc::sim {
 namespace {
@@ -22,6 +23,8 @@ Camera camera_of(const SimOptions& options) {
           options.depth_scale_m};
 }
 
+}  // namespace
+
 Pose looking(const Vector3d& from, double azimuth_rad, double down_rad, double roll_rad) {
   const Vector3d forward(std::cos(down_rad) * std::cos(azimuth_rad), std::cos(down_rad) * std::sin(azimuth_rad),
                          -std::sin(down_rad));
@@ -34,6 +37,8 @@ Pose looking(const Vector3d& from, double azimuth_rad, double down_rad, double r
   T.rotate(Eigen::AngleAxisd(roll_rad, Vector3d::UnitZ()));
   return T;
 }
+
+namespace {
 
 struct Mount {
   double x, y, azimuth_rad;
@@ -69,6 +74,11 @@ Site make_site(const SimOptions& options, const Vector3d& size) {
     lidar.id = fmt::format("ceiling{}", i);
     lidar.camera = camera_of(options);
     lidar.rate_hz = options.lidar_rate_hz;
+    if (options.world == 2) {
+      lidar.T_map_sensor = draw_other_mount(random, i, options.lidars, size);
+      site.global_lidars.push_back(std::move(lidar));
+      continue;
+    }
     lidar.T_map_sensor = looking({mount.x, mount.y, size.z() - kFromCeiling_m},
                                  mount.azimuth_rad + radians(random.uniform(-5, 5)),
                                  radians(random.uniform(28, 32)), radians(random.uniform(-1, 1)));

@@ -75,6 +75,24 @@ std::vector<Opening> random_openings(Random& random, double length, double heigh
   return openings;
 }
 
+/// Wide openings with a room's part behind, high or low, between stretches of plain wall.
+std::vector<Opening> random_niches(Random& random, double length, double height) {
+  std::vector<Opening> openings;
+  double at = random.uniform(0.5, 3.0);
+  while (at < length - 1.6) {
+    Opening o;
+    o.from = at;
+    o.to = std::min(at + random.uniform(0.9, 4.5), length - 0.4);
+    o.bottom = random.chance(0.4) ? random.uniform(0.9, 1.2) : 0;
+    o.top = std::min(height - 0.2, random.uniform(2.0, 2.9));
+    o.recess = random.uniform(0.1, 2.5);
+    o.window = random.chance(0.2);
+    openings.push_back(o);
+    at = o.to + random.uniform(1.0, 5.0);
+  }
+  return openings;
+}
+
 void add_lamps(Mesh& mesh, Random& random, const Vector3d& size, bool symmetric) {
   const int lamps = std::max(2, static_cast<int>(size.x() * size.y() / 10));
   for (int i = 0; i < lamps; ++i) {
@@ -89,22 +107,27 @@ void add_lamps(Mesh& mesh, Random& random, const Vector3d& size, bool symmetric)
 
 }  // namespace
 
-Mesh make_room(Random& random, const Vector3d& size, bool symmetric) {
+Mesh make_room(Random& random, const Vector3d& size, const RoomStyle& style) {
   Mesh mesh;
   const Vector3d x(size.x(), 0, 0), y(0, size.y(), 0), z(0, 0, size.z());
-  add_quad(mesh, Vector3d::Zero(), x, y);
+  add_quad(mesh, Vector3d::Zero(), x, y, style.floor);
   add_quad(mesh, z, x, y);
   std::vector<Opening> openings[4];
-  for (int side = 0; side < 4; ++side)
-    openings[side] = symmetric && side >= 2
-                         ? openings[side - 2]
-                         : random_openings(random, side % 2 == 0 ? size.x() : size.y(), size.z());
+  for (int side = 0; side < 4; ++side) {
+    const double length = side % 2 == 0 ? size.x() : size.y();
+    if (style.symmetric && side >= 2)
+      openings[side] = openings[side - 2];
+    else if (style.niches)
+      openings[side] = random_niches(random, length, size.z());
+    else
+      openings[side] = random_openings(random, length, size.z());
+  }
   const double quarter = 0.5 * std::numbers::pi;
   add_wall(mesh, upright({size.x(), 0, 0}, 2 * quarter), size.x(), size.z(), openings[0]);
   add_wall(mesh, upright({size.x(), size.y(), 0}, 3 * quarter), size.y(), size.z(), openings[1]);
   add_wall(mesh, upright({0, size.y(), 0}, 0), size.x(), size.z(), openings[2]);
   add_wall(mesh, upright({0, 0, 0}, quarter), size.y(), size.z(), openings[3]);
-  add_lamps(mesh, random, size, symmetric);
+  add_lamps(mesh, random, size, style.symmetric);
   return mesh;
 }
 

@@ -5,7 +5,13 @@
 
 namespace liloc::sim {
 
+struct RoomStyle {
+  bool symmetric = false;             ///< the same after half a turn
+  Material floor = Material::carpet;  ///< matte or carpet
+  bool niches = false;  ///< half-open walls: wide openings into deep recesses, some above a parapet
+};
+
 /// The inside, from (0, 0, 0) to `size_m`; z is up.
-[[nodiscard]] Mesh make_room(Random& random, const Eigen::Vector3d& size_m, bool symmetric);
+[[nodiscard]] Mesh make_room(Random& random, const Eigen::Vector3d& size_m, const RoomStyle& style);
 
 }  // namespace liloc::sim

@@ -43,10 +43,10 @@ struct Simulation::Impl {
       : options(std::move(validated_options)), world(std::move(drawn)) {}
 
   [[nodiscard]] DepthImage render(double time_s, const Camera& camera, const Pose& T_map_camera, double range_m,
-                                  bool covered, std::uint64_t key, StampNs stamp_ns) {
+                                  SensorModel model, bool covered, std::uint64_t key, StampNs stamp_ns) {
     View view = world.look(time_s, camera, T_map_camera, range_m);
     if (covered) cover_by_hand(view, camera, time_s);
-    return sense(view, {camera, 0.2, range_m, options.noise}, key, stamp_ns);
+    return sense(view, {camera, 0.2, range_m, options.noise, model}, key, stamp_ns);
   }
   [[nodiscard]] std::optional<SimEvent> emit(const Stream& stream, double time_s);
 
@@ -110,14 +110,15 @@ std::optional<SimEvent> Simulation::Impl::emit(const Stream& stream, double time
     if (during(time_s, o.ceiling_gap_start_s, o.ceiling_gap_seconds)) return std::nullopt;
     const GlobalLidar& lidar = site.global_lidars[stream.index];
     event.payload = LidarFrame{stream.index, render(time_s, lidar.camera, lidar.T_map_sensor, o.lidar_range_m,
-                                                    false, key, event.at_ns)};
+                                                    o.lidar_sensor, false, key, event.at_ns)};
   } else if (stream.source == Source::device) {
     const bool covered = stream.index == static_cast<std::size_t>(o.blocked_device) &&
                          during(time_s, o.blocked_start_s, o.blocked_seconds);
     const Pose T = world.devices()[stream.index].at(time_s).T_map_sensor;
-    event.payload = DeviceFrame{
-        stream.index,
-        render(time_s, devices[stream.index].camera, T, o.device_range_m, covered, key, device_stamp_ns), T};
+    event.payload = DeviceFrame{stream.index,
+                                render(time_s, devices[stream.index].camera, T, o.device_range_m,
+                                       o.device_sensor, covered, key, device_stamp_ns),
+                                T};
   } else {
     ImuSample sample = sim::exact_imu(world.devices()[stream.index], mounted_imu(), time_s);
     sample.stamp_ns = device_stamp_ns;

@@ -126,6 +126,19 @@ void step(Random& random, const FloorPlan& plan, Walker& walker, const std::vect
   if (!walker.way.empty() && walker.rest_s <= 0) advance(plan, walker, all);
 }
 
+/// Stands where its style wants it, or as near as others leave room.
+void take_place(Random& random, const FloorPlan& plan, const std::vector<Walker>& others, Walker& walker) {
+  walker.state.yaw_rad = walker.style.start->yaw_rad;
+  for (int i = 0; i < 50; ++i) {
+    const Vector2d by(random.uniform(-1, 1), random.uniform(-1, 1));
+    walker.state.at = plan.nearest_free(walker.style.start->at + 0.08 * i * by);
+    if (std::ranges::all_of(others, [&](const Walker& w) {
+          return (w.state.at - walker.state.at).norm() > kPersonalSpace + 0.05;
+        }))
+      return;
+  }
+}
+
 }  // namespace
 
 std::vector<Walk> draw_walks(Random& random, const FloorPlan& plan, const std::vector<WalkStyle>& styles,
@@ -134,6 +147,11 @@ std::vector<Walk> draw_walks(Random& random, const FloorPlan& plan, const std::v
   for (const WalkStyle& style : styles) {
     Walker walker;
     walker.style = style;
+    if (style.start) {
+      take_place(random, plan, walkers, walker);
+      walkers.push_back(std::move(walker));
+      continue;
+    }
     for (int i = 0; i < 50; ++i) {
       walker.state.at = plan.random_place(random);
       if (std::ranges::all_of(walkers,

@@ -1,5 +1,6 @@
 #pragma once
 // Everyone's ways through the site, drawn together so that they stay out of each other's way.
+#include <optional>
 #include <vector>
 
 #include "proto-tests/sim/floor_plan.hpp"
@@ -11,10 +12,11 @@ constexpr double kWalkStep_s = 0.1;
 struct WalkStyle {
   double speed_m_s = 1.2;
   double turn_rad_s = 1.5;
-  double start_s = 0;            ///< stands still until then
-  double pause_chance = 0.3;     ///< of standing for a while at each goal
-  bool turns_first = false;      ///< drives only where it looks
-  bool across_the_room = false;  ///< prefers far goals off the walls: a device is shown the room, not a wall
+  double start_s = 0;              ///< stands still until then
+  double pause_chance = 0.3;       ///< of standing for a while at each goal
+  bool turns_first = false;        ///< drives only where it looks
+  bool across_the_room = false;    ///< prefers far goals off the walls: a device is shown the room, not a wall
+  std::optional<Placement> start;  ///< near here at first, looking so; else anywhere
 };
 
 struct WalkState {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "proto-tests/sim/other_world.hpp"
+
 namespace liloc::sim {
 namespace {
 
@@ -22,8 +24,13 @@ WalkStyle device_style(Random& random, const SimOptions& options) {
   style.turns_first = robot;
   style.start_s = options.still_seconds + 0.5;
   style.pause_chance = 0.15;
-  style.across_the_room = true;
+  style.across_the_room = options.world != 2 || random.chance(0.5);
   return style;
+}
+
+/// World 2 has children and tall people, and phones held overhead.
+double carried_height_m(Random& hand, const SimOptions& options) {
+  return options.world == 2 ? hand.uniform(0.8, 1.7) : hand.uniform(1.0, 1.2);
 }
 
 }  // namespace
@@ -79,19 +86,29 @@ Status World::populate(const SimOptions& options) {
   Random draw(options.seed, 10), shapes(options.seed, 11);
   std::vector<WalkStyle> styles;
   for (int i = 0; i < options.devices; ++i) styles.push_back(device_style(draw, options));
-  for (int i = 0; i < options.people; ++i)
-    styles.push_back({draw.uniform(0.9, 1.4), 2.5, draw.uniform(0, 2), 0.35, false, false});
+  std::vector<Visitor> visitors;
+  if (options.world == 2) {
+    visitors = draw_visitors(draw, plan, options.people);
+    for (const Visitor& visitor : visitors) styles.push_back(visitor.style);
+  } else {
+    for (int i = 0; i < options.people; ++i)
+      styles.push_back({draw.uniform(0.9, 1.4), 2.5, draw.uniform(0, 2), 0.35, false, false, std::nullopt});
+  }
+  const auto carriers = static_cast<std::size_t>(options.devices);
   const auto walks = draw_walks(draw, plan, styles, options.seconds);
   const bool robot = options.device_kind == DeviceKind::robot;
   for (std::size_t i = 0; i < walks.size(); ++i) {
-    const bool carries = i < static_cast<std::size_t>(options.devices);
+    const bool carries = i < carriers;
     if (carries) {
       Random hand(options.seed, 100 + i);
-      devices_.push_back(sensor_trajectory(hand, walks[i], robot ? Carriage::wheels : Carriage::hand,
-                                           plan.middle(), robot ? kRobotHeight_m : hand.uniform(1.0, 1.2),
-                                           options.still_seconds));
+      devices_.push_back(
+          sensor_trajectory(hand, walks[i], robot ? Carriage::wheels : Carriage::hand, plan.middle(),
+                            robot ? kRobotHeight_m : carried_height_m(hand, options), options.still_seconds));
     }
-    Body body = carries && robot ? Body::robot() : Body::person(shapes);
+    Body body = carries && robot ? Body::robot()
+                : options.world == 2
+                    ? Body::visitor(shapes, carries ? Posture::walking : visitors[i - carriers].posture)
+                    : Body::person(shapes);
     if (auto added = add_mover(std::move(body), walks[i], carries ? static_cast<int>(i) : -1); !added)
       return added;
   }
@@ -111,9 +128,11 @@ void World::pose(const Mover& mover, double time_s) {
     T_map_body.translation() = Eigen::Vector3d(device.x(), device.y(), 0) -
                                (robot ? kRobotBack_m : kArmLength_m) * T_map_body.linear().col(0);
   }
-  const double swing = std::min(1.0, state.speed_m_s);
+  const double gesture_hz = mover.body.gesture_hz();
+  const double swing = gesture_hz > 0 ? 1.0 : std::min(1.0, state.speed_m_s);
+  const double phase_rad = stride + 2 * std::numbers::pi * gesture_hz * time_s;
   for (std::size_t part = 0; part < mover.numbers.size(); ++part)
-    caster_.move(mover.numbers[part], mover.body.T_map_part(part, T_map_body, stride, swing));
+    caster_.move(mover.numbers[part], mover.body.T_map_part(part, T_map_body, phase_rad, swing));
 }
 
 void World::move_to(double time_s) {

@@ -12,7 +12,7 @@ namespace liloc::toolbox {
 namespace {
 
 struct SimArguments {
-  std::string out, kind = "office", device_kind = "carried";
+  std::string out, kind = "office", device_kind = "carried", lidar_sensor = "l515", device_sensor = "l515";
   std::filesystem::path describe;
   bool live = false;
   int domain = 0;
@@ -26,6 +26,12 @@ Result<sim::SimOptions> checked_options(const SimArguments& arguments) {
   if (!kind) return tl::unexpected(kind.error());
   const auto device_kind = sim::device_kind_of(arguments.device_kind);
   if (!device_kind) return tl::unexpected(device_kind.error());
+  const auto lidar_sensor = sim::sensor_model_of(arguments.lidar_sensor);
+  if (!lidar_sensor) return tl::unexpected(lidar_sensor.error());
+  const auto device_sensor = sim::sensor_model_of(arguments.device_sensor);
+  if (!device_sensor) return tl::unexpected(device_sensor.error());
+  options.lidar_sensor = *lidar_sensor;
+  options.device_sensor = *device_sensor;
   options.kind = *kind;
   options.device_kind = *device_kind;
   if (arguments.live && !arguments.seconds_given) options.seconds = 3600;
@@ -81,6 +87,11 @@ void add_site_options(CLI::App& command, SimArguments& arguments) {
   sim::SimOptions& o = arguments.options;
   command.add_option("--kind", arguments.kind, "Of the site: office, corridor, symmetric or area")
       ->capture_default_str();
+  command.add_option("--world", o.world, "Whose furniture, people and mounts: 1, or 2 as another simulator's")
+      ->capture_default_str();
+  command
+      .add_option("--lidar-sensor", arguments.lidar_sensor, "On the ceiling: l515, l515-real, kinect or tof")
+      ->capture_default_str();
   command.add_option("--width", o.width_m, "Of the site in metres; 0: by the seed")->capture_default_str();
   command.add_option("--depth", o.depth_m, "Of the site in metres; 0: by the seed")->capture_default_str();
   command.add_option("--height", o.height_m, "Of the site in metres; 0: by the seed")->capture_default_str();
@@ -101,6 +112,9 @@ void add_device_options(CLI::App& command, SimArguments& arguments) {
   sim::SimOptions& o = arguments.options;
   command.add_option("--devices", o.devices, "To be located")->capture_default_str();
   command.add_option("--device-kind", arguments.device_kind, "carried or robot")->capture_default_str();
+  command
+      .add_option("--device-sensor", arguments.device_sensor, "In the devices: l515, l515-real, kinect or tof")
+      ->capture_default_str();
   command.add_option("--device-rate", o.device_rate_hz, "Their frames per second; 0: 15 carried, 10 robot")
       ->capture_default_str();
   command.add_option("--speed", o.device_speed_m_s, "In m/s; 0: by the seed")->capture_default_str();

@@ -1,5 +1,7 @@
 #include "server/app/server.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -18,6 +20,15 @@ StampNs wall_clock_ns() {
       .count();
 }
 
+/// Nothing that is worth a write: within a tenth, at 3 m.
+bool much_the_same(const std::vector<DepthNoise>& a, const std::vector<DepthNoise>& b) {
+  return a.size() == b.size() && std::ranges::equal(a, b, [](const DepthNoise& x, const DepthNoise& y) {
+           return (x.samples > 0) == (y.samples > 0) &&
+                  std::abs(x.sigma_m(3) - y.sigma_m(3)) < 0.1 * y.sigma_m(3) &&
+                  std::abs(x.missing - y.missing) < 0.1;
+         });
+}
+
 }  // namespace
 
 Server::Server(const ServerOptions& options, Site site)
@@ -29,6 +40,8 @@ Server::Server(const ServerOptions& options, Site site)
                  : open_site_state(options.state_file, global_cloud_.site(), voxel_size_m_)),
       localizer_(global_cloud_, options.localizer, state_.learned) {
   saved_ = localizer_.learned();
+  global_cloud_.set_known_noise(state_.noise);
+  saved_noise_ = state_.noise;
 }
 
 Server::~Server() {
@@ -114,11 +127,14 @@ void Server::keep_prepared(const std::stop_token& stop) {
 /// At most once a minute, and at the end; only when something was learned.
 void Server::save_learned() {
   auto learned = localizer_.learned();
-  if (state_.file.empty() || learned == saved_) return;
-  if (const Status written = write_site_state(state_.file, global_cloud_.site(), voxel_size_m_, *learned);
+  auto noise = global_cloud_.noise();
+  if (state_.file.empty() || (learned == saved_ && much_the_same(noise, saved_noise_))) return;
+  if (const Status written =
+          write_site_state(state_.file, global_cloud_.site(), voxel_size_m_, *learned, noise);
       !written)
     log::warning("{}; or name another with --state", written.error().message);
   saved_ = std::move(learned);
+  saved_noise_ = std::move(noise);
 }
 
 void Server::stop() {
@@ -147,9 +163,15 @@ wire::ServerStatus Server::status() const {
 void Server::log_status() const {
   const auto now = status();
   std::string lidars;
-  for (const auto& lidar : now.lidars)
+  const auto noise = global_cloud_.noise();
+  for (std::size_t i = 0; i < now.lidars.size(); ++i) {
+    const auto& lidar = now.lidars[i];
     lidars += fmt::format("{}{} {} {:.1f} Hz", lidars.empty() ? "" : ", ", lidar.id, wire::name_of(lidar.state),
                           lidar.measured_hz);
+    if (i < noise.size() && noise[i].samples > 0)
+      lidars += fmt::format(" (noise {:.0f} mm at 3 m, {:.0f} % missing)", 1e3 * noise[i].sigma_m(3),
+                            100 * noise[i].missing);
+  }
   log::info("{} clients, {} queued, {} answered ({} verified, {} refused); {}", now.clients, now.queued,
             now.answered, now.verified, now.refused, lidars);
 }

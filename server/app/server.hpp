@@ -36,6 +36,7 @@ class Server {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   const double voxel_size_m_;
   std::shared_ptr<const CellBounds> saved_;  ///< as the state file has it; of the preparer, then of `stop`
+  std::vector<DepthNoise> saved_noise_;      ///< the same file's
   GlobalCloud global_cloud_;
   const SiteState state_;  ///< as it was at the start
   Localizer localizer_;

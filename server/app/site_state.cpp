@@ -98,6 +98,32 @@ Result<CellBounds> parse(const std::string& file, const Site& site, double voxel
   return bounds;
 }
 
+nlohmann::ordered_json noise_json(const DepthNoise& noise) {
+  return {{"base_m", noise.base_m},
+          {"per_square_m", noise.per_square_m},
+          {"missing", noise.missing},
+          {"flying", noise.flying},
+          {"samples", noise.samples}};
+}
+
+/// Ranges: a worse sensor is none.
+Result<DepthNoise> parse_noise(const JsonFields& fields) {
+  DepthNoise noise;
+  double samples = 0;
+  const auto take = [&fields](const char* name, double most, double& into) -> Status {
+    const auto value = fields.number(name, 0, most);
+    if (!value) return tl::unexpected(value.error());
+    into = *value;
+    return {};
+  };
+  for (const Status& status :
+       {take("base_m", 0.2, noise.base_m), take("per_square_m", 0.05, noise.per_square_m),
+        take("missing", 1, noise.missing), take("flying", 1, noise.flying), take("samples", 1e15, samples)})
+    if (!status) return tl::unexpected(status.error());
+  noise.samples = static_cast<std::uint64_t>(samples);
+  return noise;
+}
+
 /// A name beside the file that nothing has yet; empty when all are taken.
 std::string free_name(const std::string& file) {
   std::error_code error;
@@ -120,16 +146,36 @@ Result<CellBounds> read_site_state(const std::string& file, const Site& site, do
   return parse(file, site, voxel_size_m);
 }
 
+std::vector<DepthNoise> read_noise(const std::string& file, const Site& site) {
+  std::vector<DepthNoise> all(site.global_lidars.size());
+  const auto object = read_json_object(file);
+  if (!object || !object->contains("lidars") || !object->at("lidars").is_object()) return all;
+  const auto& lidars = object->at("lidars");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& id = site.global_lidars[i].id;
+    if (!lidars.contains(id) || !lidars.at(id).is_object() || !lidars.at(id).contains("noise")) continue;
+    const auto& known = lidars.at(id).at("noise");
+    const std::string where = fmt::format("{}: lidars.{}.noise", file, id);
+    if (!known.is_object()) continue;
+    const auto noise = parse_noise(JsonFields(known, where));
+    if (noise)
+      all[i] = *noise;
+    else
+      log::warning("{}; it is learned anew", noise.error().message);
+  }
+  return all;
+}
+
 SiteState open_site_state(const std::string& file, const Site& site, double voxel_size_m) {
   auto bounds = read_site_state(file, site, voxel_size_m);
-  if (bounds) return {std::move(*bounds), file};
+  if (bounds) return {std::move(*bounds), read_noise(file, site), file};
   std::error_code error;
   const std::string aside = free_name(file);
   if (!aside.empty() && fs::is_regular_file(file, error)) {
     fs::rename(file, aside, error);
     if (!error) {
       log::warning("{}; it is now {}, and learning begins anew", bounds.error().message, aside);
-      return {{}, file};
+      return {{}, {}, file};
     }
   }
   log::warning("{}; it stays as it is, and what is learned is kept in memory alone", bounds.error().message);
@@ -137,11 +183,13 @@ SiteState open_site_state(const std::string& file, const Site& site, double voxe
 }
 
 Status write_site_state(const std::string& file, const Site& site, double voxel_size_m,
-                        const CellBounds& bounds) {
+                        const CellBounds& bounds, const std::vector<DepthNoise>& noise) {
   nlohmann::ordered_json lidars = nlohmann::ordered_json::object();
-  for (const GlobalLidar& lidar : site.global_lidars) {
+  for (std::size_t i = 0; i < site.global_lidars.size(); ++i) {
+    const GlobalLidar& lidar = site.global_lidars[i];
     const Eigen::Vector3d place = lidar.T_map_sensor.translation();
     lidars[lidar.id] = {{"x", place.x()}, {"y", place.y()}, {"z", place.z()}};
+    if (i < noise.size() && noise[i].samples > 0) lidars[lidar.id]["noise"] = noise_json(noise[i]);
   }
   nlohmann::ordered_json object{{"format", kFormat},
                                 {"version", kVersion},

@@ -1,9 +1,11 @@
 #pragma once
 // What a server learns of its site and keeps beside the site's description, so that a restart loses nothing.
 #include <string>
+#include <vector>
 
 #include "common/geometry/camera.hpp"
 #include "common/registration/cell_bounds.hpp"
+#include "server/global_cloud/depth_noise.hpp"
 
 namespace liloc {
 
@@ -16,9 +18,14 @@ namespace liloc {
 [[nodiscard]] Result<CellBounds> read_site_state(const std::string& file, const Site& site,
                                                  double voxel_size_m);
 
+/// How each LiDAR errs, in the site's order, as the same file has it; the defaults where it has nothing or what
+/// no sensor can be.
+[[nodiscard]] std::vector<DepthNoise> read_noise(const std::string& file, const Site& site);
+
 struct SiteState {
   CellBounds learned;
-  std::string file;  ///< to keep it in; empty: in memory alone
+  std::vector<DepthNoise> noise;  ///< per LiDAR, in the site's order
+  std::string file;               ///< to keep it in; empty: in memory alone
 };
 /// `read_site_state`, but a server starts in any case: what cannot be used is told in the log and put aside
 /// under a free name, FILE.unreadable or FILE.unreadable-2 ...; what cannot be put aside stays as it is.
@@ -26,6 +33,6 @@ struct SiteState {
 
 /// Complete or not at all.
 [[nodiscard]] Status write_site_state(const std::string& file, const Site& site, double voxel_size_m,
-                                      const CellBounds& bounds);
+                                      const CellBounds& bounds, const std::vector<DepthNoise>& noise = {});
 
 }  // namespace liloc

@@ -12,28 +12,39 @@ constexpr int kCompany = 2;  // neighbours that move as well, or it is noise
 constexpr float kHoldShare = 0.003F;  // of the depth
 constexpr int kMoreFrames = 3;        // times as many in a mean make it worth showing anew
 
+constexpr std::size_t kMeasureEvery = 5;  // pixels, another fifth each frame: enough by far within a second
+constexpr float kGapGain = 1.0F / 16;     // of a gap in the pixel's mean
+constexpr float kLeastLost = 0.002F;      // nothing is surer than that
+constexpr double kMostMissing = 0.95;     // a pixel with fewer returns is forgotten as if it had these
+constexpr std::uint16_t kMostMissed = 60'000;
+
 bool lasted(std::uint32_t since_ms, std::uint32_t now_ms, double seconds) {
   return static_cast<double>(now_ms - since_ms) >= 1e3 * seconds;
 }
 
 }  // namespace
 
-Background::Background(const Camera& camera, const BackgroundOptions& options)
+Background::Background(const Camera& camera, const BackgroundOptions& options, const DepthNoise& known)
     : options_(options),
       width_(camera.width),
       height_(camera.height),
       scale_m_(camera.depth_scale_m),
       pixels_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)),
-      kinds_(pixels_.size(), Kind::nothing) {}
+      kinds_(pixels_.size(), Kind::nothing),
+      meter_(known) {}
 
 float Background::tolerance_of(float units) const {
-  return static_cast<float>(options_.tolerance_m / scale_m_) + 0.01F * units;
+  const double z_m = units * scale_m_;
+  return static_cast<float>(
+      std::max(options_.tolerance_m + 0.01 * z_m, options_.tolerance_sigmas * noise().sigma_m(z_m)) / scale_m_);
 }
 
 void Background::replace(Pixel* pixel, float units) {
   pixel->surface = units;
   pixel->averaged = 1;
   pixel->candidates = 0;
+  pixel->missed = 0;
+  pixel->gap = static_cast<float>(1 / (1 - std::min(noise().missing, kMostMissing)));
   ++replaced_;
 }
 
@@ -48,9 +59,11 @@ void Background::for_each_around(std::size_t i, const Visit& visit) const {
 
 bool Background::continues_a_neighbour(std::size_t i, float units) const {
   bool continues = false;
+  const auto fill_surprise = static_cast<float>(options_.fill_surprise);
   for_each_around(i, [&](std::size_t j) {
     const Pixel& p = pixels_[j];
-    continues |= p.surface > 0 && p.averaged >= kProven && !p.missing &&
+    continues |= p.surface > 0 && p.averaged >= kProven &&
+                 (!p.missing || surprise_of_missing(p) < fill_surprise) &&
                  std::abs(p.surface - units) <= tolerance_of(units);
   });
   return continues;
@@ -60,6 +73,8 @@ Background::Kind Background::learn(std::size_t i, float units, std::uint32_t now
   Pixel* pixel = &pixels_[i];
   const float nearer = pixel->surface - units;
   pixel->missing = false;
+  pixel->gap += kGapGain * (static_cast<float>(pixel->missed + 1) - pixel->gap);
+  pixel->missed = 0;
   if (pixel->surface > 0 && std::abs(nearer) <= tolerance_of(units)) {
     if (pixel->averaged < options_.most_averaged) ++pixel->averaged;
     pixel->surface -= nearer / static_cast<float>(pixel->averaged);
@@ -84,7 +99,27 @@ void Background::miss(Pixel* pixel, std::uint32_t now_ms) {
   if (pixel->surface == 0) return;
   if (!pixel->missing) pixel->missing_since_ms = now_ms;
   pixel->missing = true;
-  if (lasted(pixel->missing_since_ms, now_ms, options_.forget_seconds)) replace(pixel, 0);
+  if (pixel->missed < kMostMissed) ++pixel->missed;
+  if (lasted(pixel->missing_since_ms, now_ms, options_.forget_seconds) &&
+      surprise_of_missing(*pixel) >= static_cast<float>(options_.forget_surprise))
+    replace(pixel, 0);
+}
+
+/// Had each frame its own chance of a return.
+float Background::surprise_of_missing(const Pixel& pixel) const {
+  const float lost = std::clamp(1 - 1 / pixel.gap, kLeastLost, static_cast<float>(kMostMissing));
+  return -static_cast<float>(pixel.missed) * std::log(lost);
+}
+
+void Background::measure() {
+  int known = 0, missing = 0, returns = 0, flying = 0;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    known += pixels_[i].surface > 0;
+    missing += pixels_[i].surface > 0 && pixels_[i].missing;
+    returns += kinds_[i] != Kind::nothing;
+    flying += kinds_[i] == Kind::farther;
+  }
+  meter_.add_frame(known, missing, returns, flying);
 }
 
 Layers Background::learn(const DepthImage& image) {
@@ -99,13 +134,24 @@ Layers Background::learn(const DepthImage& image) {
       continue;
     }
     if (first) replace(&pixels_[i], image.units[i]);
+    if (pixels_[i].last > 0 && (i + static_cast<std::size_t>(frames_)) % kMeasureEvery == 0)
+      meter_.add_pair(image.units[i] * scale_m_, (image.units[i] - pixels_[i].last) * scale_m_);
+    pixels_[i].last = image.units[i];
     kinds_[i] = learn(i, image.units[i], now_ms);
   }
+  measure();
   return separated(image);
 }
 
 Layers Background::separated(const DepthImage& image) const {
   Layers layers{image, {image.stamp_ns, width_, height_, std::vector<std::uint16_t>(pixels_.size(), 0)}};
+  const auto fill_surprise = static_cast<float>(options_.fill_surprise);
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& p = pixels_[i];
+    if (kinds_[i] == Kind::nothing && p.surface > 0 && p.averaged >= kProven &&
+        surprise_of_missing(p) < fill_surprise)
+      layers.still.units[i] = static_cast<std::uint16_t>(std::lround(p.surface));
+  }
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     if (kinds_[i] == Kind::nothing || kinds_[i] == Kind::still) continue;
     layers.still.units[i] = 0;

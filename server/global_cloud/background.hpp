@@ -3,13 +3,17 @@
 #include <vector>
 
 #include "common/geometry/camera.hpp"
+#include "server/global_cloud/depth_noise.hpp"
 
 namespace liloc {
 
 struct BackgroundOptions {
   double settle_seconds = 2.0;  ///< what stands still for so long is part of the room (again)
-  double tolerance_m = 0.06;    ///< depths this close, plus 1 % of the depth, are the same surface
-  double forget_seconds = 1.0;  ///< a surface without any return for so long is forgotten
+  double tolerance_m = 0.06;    ///< depths this close, plus 1 % of the depth, are the same surface ...
+  double tolerance_sigmas = 4;  ///< ... and those that the sensor's noise explains
+  double forget_seconds = 1.0;  ///< a surface without any return for so long is forgotten ...
+  double forget_surprise = 7;   ///< ... if that is so unlikely (-ln) for how often the pixel has returns
+  double fill_surprise = 1.5;   ///< a missing return less unlikely than this says nothing: the surface stands
   int most_averaged = 30;       ///< frames in a pixel's running mean
   double hold_m = 0.01;         ///< means that moved by less, plus 0.3 % of the depth, are shown as they were
   double fresh_share = 0.004;   ///< so much of the image changed: the room is to be derived anew at once ...
@@ -28,13 +32,17 @@ struct Layers {
 /// its own: a return nearer than its surface, or where there was none, belongs to something that came by, until
 /// it has stood there for a while; two farther ones show that the old surface is gone. A return that continues
 /// a neighbour's surface where there was none is more of that. Surfaces are running means, so their noise
-/// shrinks with time. Not thread-safe.
+/// shrinks with time. A sensor that often has no return keeps its surfaces for longer. Not thread-safe.
 class Background {
  public:
-  Background(const Camera& camera, const BackgroundOptions& options);
+  /// `known`: what was learned of the sensor before.
+  Background(const Camera& camera, const BackgroundOptions& options, const DepthNoise& known = {});
 
   /// Learns from the next frame (rising stamps, the camera's size) and takes it apart.
   [[nodiscard]] Layers learn(const DepthImage& image);
+
+  /// How the sensor errs, by what has stood still so far.
+  [[nodiscard]] const DepthNoise& noise() const { return meter_.noise(); }
 
   /// How much the surfaces have changed since the last call of `surfaces`; large also after the 3rd, 10th and
   /// 30th frame, for what the means have gained.
@@ -52,6 +60,9 @@ class Background {
     bool missing = false;
     std::uint8_t shown_averaged = 0;  ///< frames in the mean that `surfaces` showed last
     std::uint16_t shown = 0;          ///< units
+    std::uint16_t missed = 0;         ///< frames since the last return
+    std::uint16_t last = 0;           ///< units of the last return
+    float gap = 1;                    ///< mean number of frames from return to return
   };
   // Times are milliseconds that wrap: only differences count, and a clock may be set forward by years.
   [[nodiscard]] Kind learn(std::size_t i, float units, std::uint32_t now_ms);
@@ -63,6 +74,8 @@ class Background {
   void show(Pixel* pixel) const;
   [[nodiscard]] bool gained() const;
   void miss(Pixel* pixel, std::uint32_t now_ms);
+  [[nodiscard]] float surprise_of_missing(const Pixel& pixel) const;  ///< -ln of its chance
+  void measure();  ///< takes the frame into the sensor's noise
   void replace(Pixel* pixel, float units);
 
   BackgroundOptions options_;
@@ -73,6 +86,7 @@ class Background {
   int frames_ = 0;
   std::vector<Pixel> pixels_;
   std::vector<Kind> kinds_;  ///< of the newest frame; what is not known to be there yet counts as nearer
+  NoiseMeter meter_;
 };
 
 }  // namespace liloc

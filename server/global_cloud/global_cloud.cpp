@@ -39,6 +39,22 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
   return {};
 }
 
+void GlobalCloud::set_known_noise(const std::vector<DepthNoise>& known) {
+  for (std::size_t i = 0; i < std::min(known.size(), watches_.size()); ++i) {
+    const std::scoped_lock in_turn(watches_[i].mutex);
+    watches_[i].background = Background(site_.global_lidars[i].camera, options_.background, known[i]);
+  }
+}
+
+std::vector<DepthNoise> GlobalCloud::noise() const {
+  std::vector<DepthNoise> all;
+  for (const Watch& watch : watches_) {
+    const std::scoped_lock in_turn(watch.mutex);
+    all.push_back(watch.background.noise());
+  }
+  return all;
+}
+
 void GlobalCloud::keep(std::size_t lidar, Frame frame) {
   const std::scoped_lock lock(mutex_);
   auto& frames = frames_[lidar];
@@ -53,7 +69,8 @@ bool GlobalCloud::clock_set_back(std::size_t lidar, StampNs stamp_ns) {
   const bool late = stamp_ns < *watch.last_ns - options_.keep_ns;
   watch.late = late ? watch.late + 1 : 0;
   if (watch.late < kLateOnes) return false;
-  watch.background = Background(site_.global_lidars[lidar].camera, options_.background);
+  watch.background =
+      Background(site_.global_lidars[lidar].camera, options_.background, watch.background.noise());
   watch.surfaces.reset();
   const std::scoped_lock lock(mutex_);
   frames_[lidar].clear();

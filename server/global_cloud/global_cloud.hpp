@@ -48,6 +48,11 @@ class GlobalCloud {
 
   [[nodiscard]] const Site& site() const { return site_; }
 
+  /// What an earlier run learned of each LiDAR, in the site's order; before the first frame.
+  void set_known_noise(const std::vector<DepthNoise>& known);
+  /// What is known by now, in the site's order.
+  [[nodiscard]] std::vector<DepthNoise> noise() const;
+
  private:
   using Frame = std::shared_ptr<const LidarFrame>;
 
@@ -55,7 +60,7 @@ class GlobalCloud {
   /// in turn while they are learned from, which requests need not wait for; taken before `mutex_`.
   struct Watch {
     explicit Watch(Background empty) : background(std::move(empty)) {}
-    std::mutex mutex;
+    mutable std::mutex mutex;
     Background background;
     std::shared_ptr<const LidarSurfaces> surfaces;
     std::optional<StampNs> last_ns;

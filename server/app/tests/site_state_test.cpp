@@ -64,6 +64,28 @@ TEST_F(SiteStateFile, WhatIsWrittenIsRead) {
       << "nothing is left over";
 }
 
+TEST_F(SiteStateFile, TheSensorsNoiseIsKeptPerLidar) {
+  const std::vector<DepthNoise> noise{{0.01, 0.002, 0.6, 0.02, 12345}, {}};
+  ASSERT_TRUE(write_site_state(file(), some_site(), 0.05, some_bounds(), noise));
+  EXPECT_EQ(open_site_state(file(), some_site(), 0.05).noise, noise);
+  ASSERT_TRUE(write_site_state(file(), some_site(), 0.05, some_bounds()));
+  EXPECT_EQ(open_site_state(file(), some_site(), 0.05).noise, (std::vector<DepthNoise>(2)))
+      << "a file before noise";
+}
+
+TEST_F(SiteStateFile, NoiseThatNoSensorHasIsLearnedAnew) {
+  const std::string head =
+      R"({"format": "liloc site state", "version": 2, "cell_m": 2.5, "voxel_size_m": 0.05, "cells": [], "lidars": )"
+      R"({"south": {"x": 4, "y": 2, "z": 2.6}, "north": {"x": 0, "y": 0, "z": 0, "noise": )";
+  for (const char* noise :
+       {"3", "null", "{}", R"({"base_m": -1, "per_square_m": 0, "missing": 0, "flying": 0, "samples": 9})",
+        R"({"base_m": 0.01, "per_square_m": 0, "missing": 7, "flying": 0, "samples": 9})"}) {
+    const SiteState state = open_site_state(file((head + noise + "}}}").c_str()), some_site(), 0.05);
+    EXPECT_EQ(state.noise, (std::vector<DepthNoise>(2))) << noise;
+    EXPECT_EQ(state.file, file()) << "the rest of it stands: " << noise;
+  }
+}
+
 TEST_F(SiteStateFile, NoFileIsNothingLearned) {
   const auto read = read_site_state(file(), some_site(), 0.05);
   ASSERT_TRUE(read);

@@ -16,7 +16,8 @@ constexpr double kGyroTrustRad = 0.2;             // the gyro cannot be off by m
 constexpr double kGuessedSdM = 0.02;              // of a pose that the scene showed along some axes only
 constexpr double kHeldSdRad = 0.0005, kHeldSdM = 0.001;  // of a standing device: StandingOptions::moved_m / 3
 constexpr double kMostSurprise = 22.5;                   // chi-square of six, one in a thousand
-constexpr StampNs kReferAfter = from_ms(2000);           // somebody who passes covers the view for less
+constexpr int kProven = 3;  // frames that stood where a reference was taken, and that then tell it is left
+constexpr StampNs kReferAfter = from_ms(2000);  // somebody who passes covers the view for less
 constexpr double kLastingDoubt = 4;  // of variances: errors of the map last, and people are not in the model
 
 double largest_sd_m(const Matrix6d& covariance) {
@@ -55,13 +56,18 @@ std::optional<ScanMatch> Odometry::match_near(const std::vector<Surfel>& frame, 
 
 std::optional<ScanMatch> Odometry::stand(const DepthImage& image, const MotionGuess& guess) {
   if (!standing_.has_reference()) return std::nullopt;
-  const StandingCheck check = standing_.compare(image);
-  log::debug("standing: {}, share {:.2f}, {} tiles, known to {:.1f} mm, moved {:.1f} mm {:.3f} deg",
-             check.stands, check.share, check.tiles, 1e3 * check.sd_m, 1e3 * check.motion.tail<3>().norm(),
-             degrees(check.motion.head<3>().norm()), check.explained);
-  left_ = check.moved;
   // Who felt the device move, or saw it, does not believe what only looks the same.
-  if (!check.stands || guess.surprise_of(standing_.T_odom_reference()) > kMostSurprise) return std::nullopt;
+  if (guess.surprise_of(standing_.T_odom_reference()) > kMostSurprise) {
+    ++gone_;
+    return std::nullopt;
+  }
+  const StandingCheck check = standing_.compare(image);
+  log::debug(
+      "standing: {}, share {:.2f}, {} tiles, known to {:.1f} mm, agree {:.2f}, moved {:.1f} mm {:.3f} deg",
+      check.stands, check.share, check.tiles, 1e3 * check.sd_m, check.agree,
+      1e3 * check.motion.tail<3>().norm(), degrees(check.motion.head<3>().norm()), check.explained);
+  gone_ = check.moved ? gone_ + 1 : 0;
+  if (!check.stands) return std::nullopt;
   // Where the view says little, a guess that felt the motion says more.
   const Pose& T_reference = standing_.T_odom_reference();
   Matrix6d turn = Matrix6d::Zero();
@@ -192,12 +198,16 @@ void Odometry::remember(const DepthImage& image, const std::vector<Surfel>& fram
 /// does not make a new one.
 void Odometry::refer(const DepthImage& image, const OdometryStep& step) {
   standing_.next(image);
-  if (step.method == "standing") stood_ns_ = image.stamp_ns;
-  if (step.method == "standing" || !step.converged || step.doubtful) return;
-  if (!standing_.has_reference() || left_ || image.stamp_ns - stood_ns_ > kReferAfter) {
-    standing_.refer(step.T_odom_sensor);
+  if (step.method == "standing") {
     stood_ns_ = image.stamp_ns;
+    ++stood_;
   }
+  if (step.method == "standing" || !step.converged || step.doubtful) return;
+  const bool left = gone_ >= (stood_ >= kProven ? kProven : 1);
+  if (standing_.has_reference() && !left && image.stamp_ns - stood_ns_ <= kReferAfter) return;
+  standing_.refer(step.T_odom_sensor);
+  stood_ns_ = image.stamp_ns;
+  stood_ = gone_ = 0;
 }
 
 OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,

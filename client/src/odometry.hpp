@@ -88,7 +88,7 @@ class Odometry {
   std::uint32_t segment_ = 0;
   StampNs last_ns_ = 0;       ///< of the last frame
   StampNs unmatched_ns_ = 0;  ///< of the first usable frame since the last match that fits nothing; 0: none
-  bool left_ = false;         ///< the newest frame shows that the device is elsewhere than its reference
+  int stood_ = 0, gone_ = 0;  ///< frames at the reference, and frames in a row that surely are not
   StampNs stood_ns_ = 0;      ///< of the last frame that stood where its reference was taken
   StampNs anchored_ns_ = 0;   ///< of the last matched frame
   StampNs keyframe_ns_ = 0;

@@ -1,6 +1,7 @@
 #include "client/src/standing_view.hpp"
 
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -70,27 +71,25 @@ StandingView::Tile StandingView::fit_tile(int u0, int v0) const {
   // A plane is linear in the image: 1 / z = normal . (x, y, 1) / distance.
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> points;
-  for (int v = v0; v < v0 + options_.tile_px; ++v)
-    for (int u = u0; u < u0 + options_.tile_px; ++u) {
-      const double z = reference_.at(u, v) * scale;
-      if (z <= 0) continue;
-      const Eigen::Vector3d ray((u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy, 1);
-      A += z * z * ray * ray.transpose();  // an error of z is one of 1 / z times z^2
-      b += z * ray;
-      points.push_back(z * ray);
-    }
-  if (static_cast<int>(points.size()) < kFewestPixels) return tile;
+  double count = 0;
+  const auto each_point = [&](const auto& use) {
+    for (int v = v0; v < v0 + options_.tile_px; ++v)
+      for (int u = u0; u < u0 + options_.tile_px; ++u)
+        if (const std::uint16_t depth = reference_.at(u, v); depth > 0)
+          use(Eigen::Vector3d(depth * scale * ray_of(u, v)));
+  };
+  each_point([&](const Eigen::Vector3d& p) {
+    A += p * p.transpose();  // an error of z is one of 1 / z times z^2
+    b += p;
+    count += 1;
+  });
+  if (count < kFewestPixels) return tile;
+  tile.mean = b / count;
   const Eigen::Vector3d plane = A.ldlt().solve(b);
   if (!plane.allFinite() || plane.norm() < 1e-6) return tile;
   tile.normal = plane.normalized();
-  const double distance = 1 / plane.norm();
   double squares = 0;
-  for (const Eigen::Vector3d& p : points) {
-    tile.mean += p / static_cast<double>(points.size());
-    squares += std::pow(tile.normal.dot(p) - distance, 2);
-  }
-  const auto count = static_cast<double>(points.size());
+  each_point([&](const Eigen::Vector3d& p) { squares += std::pow(tile.normal.dot(p) - 1 / plane.norm(), 2); });
   const double rms = std::sqrt(squares / count);
   const double sd = noise_.sd_units(static_cast<std::uint16_t>(tile.mean.z() / scale)) * scale;
   const double half = 0.5 * options_.tile_px * tile.mean.z() / camera_.fx;
@@ -101,6 +100,7 @@ StandingView::Tile StandingView::fit_tile(int u0, int v0) const {
 
 void StandingView::find_edges() {
   edges_.clear();
+  edges_found_ = true;
   const int width = reference_.width, height = reference_.height;
   const int columns = (width + options_.tile_px - 1) / options_.tile_px;
   const auto look = [&](int u, int v, bool upright) {
@@ -136,7 +136,7 @@ void StandingView::prepare() {
   for (int v = 0; v + options_.tile_px <= reference_.height; v += options_.tile_px)
     for (int u = 0; u + options_.tile_px <= reference_.width; u += options_.tile_px)
       tiles_.push_back(fit_tile(u, v));
-  find_edges();
+  edges_found_ = false;
 }
 
 void StandingView::gather_surfaces(const DepthImage& image, std::vector<Evidence>& rows, StandingCheck& check,
@@ -198,7 +198,7 @@ void StandingView::gather_edges(const DepthImage& image, std::vector<Evidence>& 
       continue;  // something else stands there now
     const int u = static_cast<int>(edge.near) % image.width, v = static_cast<int>(edge.near) / image.width;
     const double z = near * camera_.depth_scale_m;
-    const Eigen::Vector3d ray((u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy, 1);
+    const Eigen::Vector3d ray = ray_of(u, v);
     const Matrix36d D = point_by_motion(z * ray);
     Sum& sum = sums[static_cast<std::size_t>(2 * edge.tile + (edge.upright ? 1 : 0))];
     const double weight =
@@ -217,10 +217,11 @@ void StandingView::gather_edges(const DepthImage& image, std::vector<Evidence>& 
 
 /// Of what agrees with standing still, so that a person's edges, as consistent among themselves, do not take
 /// the device along: of a device that moves hardly anything that shows the motion agrees.
-void StandingView::solve(std::vector<Evidence>& rows, StandingCheck& check) {
-  const std::size_t all = rows.size();
+void StandingView::solve(std::vector<Evidence>& rows, StandingCheck& check) const {
+  const auto count = static_cast<double>(std::max<std::size_t>(rows.size(), 1));
+  Matrix6d all = kFaint * Matrix6d::Identity();
+  for (const Evidence& row : rows) all += row.J * row.J.transpose() / (row.sd * row.sd);
   std::erase_if(rows, [](const Evidence& row) { return std::abs(row.value) > kAgree * row.sd; });
-  check.agree = static_cast<double>(rows.size()) / static_cast<double>(std::max<std::size_t>(all, 1));
   check.information = kFaint * Matrix6d::Identity();
   Vector6d b = Vector6d::Zero();
   double squares = 0;
@@ -229,10 +230,19 @@ void StandingView::solve(std::vector<Evidence>& rows, StandingCheck& check) {
     b += row.J * row.value / (row.sd * row.sd);
     squares += row.value * row.value / (row.sd * row.sd);
   }
+  // Along the axis where the most of what would show a motion does not agree.
+  check.agree = static_cast<double>(rows.size()) / count;
+  check.agree_least =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d>(check.information, all, Eigen::EigenvaluesOnly)
+          .eigenvalues()[0];
   check.motion = check.information.ldlt().solve(b);
   const double explained = b.dot(check.motion);
   // Where others move, what is left is more than noise, and so is what chance explains.
-  check.explained = explained / std::max(1.0, (squares - explained) / static_cast<double>(rows.size()));
+  check.explained = explained / std::max(1.0, (squares - explained) /
+                                                  static_cast<double>(std::max<std::size_t>(rows.size(), 1)));
+  const bool near =
+      check.motion.head<3>().norm() <= options_.moved_rad && check.motion.tail<3>().norm() <= options_.moved_m;
+  check.moved = check.agree < options_.min_agree || (!near && check.explained > options_.significant);
 }
 
 StandingCheck StandingView::compare(const DepthImage& image) {
@@ -254,19 +264,19 @@ StandingCheck StandingView::compare(const DepthImage& image) {
   gather_surfaces(image, rows, check, normal_noise);
   check.moved = check.share < options_.min_share;
   if (check.moved || check.tiles < options_.min_tiles) return check;
-  const std::size_t surfaces = rows.size();
+  std::vector<Evidence> surfaces = rows;
+  solve(surfaces, check);
+  if (check.moved) return check;  // edges tell nothing else
+  if (!edges_found_) find_edges();
   gather_edges(image, rows);
-  check.edges = static_cast<int>(rows.size() - surfaces);
   solve(rows, check);
   Vector6d unit = Vector6d::Ones();
   unit.head<3>() /= kLeverM;
   const Matrix6d scaled = unit.asDiagonal() * check.information * unit.asDiagonal();
   const double known = Eigen::SelfAdjointEigenSolver<Matrix6d>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[0];
   check.sd_m = 1 / std::sqrt(std::max(known - kNormalNoise * normal_noise, 1e-6));
-  const bool near =
-      check.motion.head<3>().norm() <= options_.moved_rad && check.motion.tail<3>().norm() <= options_.moved_m;
-  check.moved = check.agree < options_.min_agree || (!near && check.explained > options_.significant);
-  check.stands = !check.moved && check.sd_m <= options_.most_sd_m;
+  check.stands =
+      !check.moved && check.agree_least >= options_.min_agree_least && check.sd_m <= options_.most_sd_m;
   return check;
 }
 

@@ -7,29 +7,32 @@
 namespace liloc {
 
 struct StandingOptions {
-  int tile_px = 16;           ///< side of the squares that are judged together
-  float deviations = 3;       ///< of the noise, within which a pixel has not changed
-  double min_share = 0.25;    ///< of the pixels with a return in both frames that have not changed
-  int min_tiles = 10;         ///< unchanged ones, in at least three quarters of the image
-  double min_agree = 0.5;     ///< of the unchanged squares and edges that have not shifted
-  double most_sd_m = 0.010;   ///< what must be known of a motion along any axis; a radian counts as 2 m
-  double moved_m = 0.003;     ///< a motion beyond, if it is significant, is none of a device that stands,
-  double moved_rad = 0.0017;  ///< (0.1 degrees)
-  double significant = 22.5;  ///< which is, that so much of the squared deviations is explained by it:
-                              ///< chi-square of six, one in a thousand
+  int tile_px = 16;               ///< side of the squares that are judged together
+  float deviations = 3;           ///< of the noise, within which a pixel has not changed
+  double min_share = 0.25;        ///< of the pixels with a return in both frames that have not changed
+  int min_tiles = 10;             ///< unchanged ones, in at least three quarters of the image
+  double min_agree = 0.5;         ///< of the unchanged squares and edges that have not shifted,
+  double min_agree_least = 0.05;  ///< and of what shows a motion along any axis: 0.02 to 0.04 of devices that
+                                  ///< moved by 3 cm, 0.06 and more of those that stood beside walkers
+  double most_sd_m = 0.010;       ///< what must be known of a motion along any axis; a radian counts as 2 m
+  double moved_m = 0.003;         ///< a motion beyond, if it is significant, is none of a device that stands,
+  double moved_rad = 0.0017;      ///< (0.1 degrees)
+  double significant = 22.5;      ///< which is, that so much of the squared deviations is explained by it:
+                                  ///< chi-square of six, one in a thousand
 };
 
 /// What a frame says, pixel by pixel, of the motion since a reference frame.
 struct StandingCheck {
   bool stands = false;
-  bool moved = false;                  ///< surely; where neither is sure the frame shows too little
-  double share = 0;                    ///< of the pixels with a return in both that have not changed
-  int tiles = 0;                       ///< unchanged ones
-  int edges = 0;                       ///< squares with depth edges that were seen again
-  double sd_m = 0;                     ///< along the axis that is known least; a radian counts as 2 m
-  double agree = 0;                    ///< share of them that have not shifted
-  double explained = 0;                ///< squared deviations that the motion explains and standing does not
-  Vector6d motion = Vector6d::Zero();  ///< T_reference_now to first order, [rad; m], sensor axes
+  bool moved = false;      ///< surely; where neither is sure the frame shows too little
+  double share = 0;        ///< of the pixels with a return in both that have not changed
+  int tiles = 0;           ///< unchanged ones
+  int edges = 0;           ///< squares with depth edges that were seen again
+  double sd_m = 0;         ///< along the axis that is known least; a radian counts as 2 m
+  double agree = 0;        ///< share of what is unchanged that has not shifted
+  double agree_least = 0;  ///< the same, along the axis where the least of what shows a motion has not
+  double explained = 0;    ///< squared deviations that the motion explains and standing does not
+  Vector6d motion = Vector6d::Zero();       ///< T_reference_now to first order, [rad; m], sensor axes
   Matrix6d information = Matrix6d::Zero();  ///< of it
 };
 
@@ -69,13 +72,16 @@ class StandingView {
   };
   struct Evidence;
 
+  [[nodiscard]] Eigen::Vector3d ray_of(int u, int v) const {
+    return {(u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy, 1};
+  }
   void prepare();
   [[nodiscard]] Tile fit_tile(int u, int v) const;
   void find_edges();
   [[nodiscard]] bool same(std::uint16_t before, int after) const;
   void gather_surfaces(const DepthImage& image, std::vector<Evidence>& rows, StandingCheck& check,
                        double& normal_noise) const;
-  static void solve(std::vector<Evidence>& rows, StandingCheck& check);
+  void solve(std::vector<Evidence>& rows, StandingCheck& check) const;
   void gather_edges(const DepthImage& image, std::vector<Evidence>& rows) const;
 
   Camera camera_;
@@ -86,6 +92,7 @@ class StandingView {
   double prepared_for_ = 0;  ///< noise for which tiles and edges are the reference's; 0: they are not
   std::vector<Tile> tiles_;
   std::vector<Edge> edges_;
+  bool edges_found_ = false;
 };
 
 }  // namespace liloc

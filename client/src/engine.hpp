@@ -46,7 +46,8 @@ struct OdometrySample {
 struct FrameResult {
   StampNs stamp_ns = 0;
   bool informative = true;
-  std::string method;  ///< how its pose was found: "first", "icp", "ransac", "inertial", "external", "guess"
+  std::string method;  ///< how its pose was found: "first", "icp", "ransac", "inertial", "standing",
+                       ///< "external", "guess"
   bool converged =
       true;  ///< measured, and no jump from the frame before (sight corrected what had been guessed)
   double latency_ms = 0;

@@ -14,6 +14,10 @@ constexpr double kVagueRad = 0.1, kPoorOverlap = 0.8;  // one turned by more may
 constexpr double kReachM = 0.3, kReachSpeed = 2;  // m/s: nobody carries a device off faster while it is blind
 constexpr double kGyroTrustRad = 0.2;             // the gyro cannot be off by more over a bridged stretch
 constexpr double kGuessedSdM = 0.02;              // of a pose that the scene showed along some axes only
+constexpr double kHeldSdRad = 0.0005, kHeldSdM = 0.001;  // of a standing device: StandingOptions::moved_m / 3
+constexpr double kMostSurprise = 22.5;                   // chi-square of six, one in a thousand
+constexpr int kProven = 3;  // frames that stood where a reference was taken, and that then tell it is left
+constexpr StampNs kReferAfter = from_ms(2000);  // somebody who passes covers the view for less
 constexpr double kLastingDoubt = 4;  // of variances: errors of the map last, and people are not in the model
 
 double largest_sd_m(const Matrix6d& covariance) {
@@ -26,7 +30,8 @@ Odometry::Odometry(const OdometryOptions& options)
     : options_(options),
       map_({.cell_m = options.cell_m}),
       motion_(options.T_imu_sensor, options.method == LocalMethod::cloud ? InertialMethod::preintegration
-                                                                         : InertialMethod::algorithm1) {}
+                                                                         : InertialMethod::algorithm1),
+      standing_(options.camera) {}
 
 /// From the guess, or from all over its region where that is large and the frame hardly fits.
 std::optional<ScanMatch> Odometry::match_near(const std::vector<Surfel>& frame, const MotionGuess& guess,
@@ -47,6 +52,42 @@ std::optional<ScanMatch> Odometry::match_near(const std::vector<Surfel>& frame, 
       degrees(angle_between_rad(found->T_map_sensor, guess.T_map_sensor)), 1e3 * guess.sd_m(),
       degrees(guess.sd_rad()), map_.size());
   return best;
+}
+
+std::optional<ScanMatch> Odometry::stand(const DepthImage& image, const MotionGuess& guess) {
+  if (!standing_.has_reference()) return std::nullopt;
+  // Who felt the device move, or saw it, does not believe what only looks the same.
+  if (guess.surprise_of(standing_.T_odom_reference()) > kMostSurprise) {
+    ++gone_;
+    return std::nullopt;
+  }
+  const StandingCheck check = standing_.compare(image);
+  log::debug(
+      "standing: {}, share {:.2f}, {} tiles, known to {:.1f} mm, agree {:.2f}, moved {:.1f} mm {:.3f} deg",
+      check.stands, check.share, check.tiles, 1e3 * check.sd_m, check.agree,
+      1e3 * check.motion.tail<3>().norm(), degrees(check.motion.head<3>().norm()), check.explained);
+  gone_ = check.moved ? gone_ + 1 : 0;
+  if (!check.stands) return std::nullopt;
+  // Where the view says little, a guess that felt the motion says more.
+  const Pose& T_reference = standing_.T_odom_reference();
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_reference.linear();
+  Matrix6d held = check.information.inverse();
+  held.diagonal().head<3>().array() += kHeldSdRad * kHeldSdRad;
+  held.diagonal().tail<3>().array() += kHeldSdM * kHeldSdM;
+  const Matrix6d seen = turn * held.inverse() * turn.transpose();
+  Vector6d back;
+  back << so3_log(T_reference.linear() * guess.T_map_sensor.linear().transpose()),
+      T_reference.translation() - guess.T_map_sensor.translation();
+  ScanMatch match;
+  match.information = guess.covariance.inverse() + seen;
+  const Vector6d step = match.information.ldlt().solve(seen * back);
+  match.T_map_sensor.linear() = so3_exp(step.head<3>()) * guess.T_map_sensor.linear();
+  match.T_map_sensor.translation() = guess.T_map_sensor.translation() + step.tail<3>();
+  match.observed = Matrix6d::Identity();
+  match.overlap = match.paired = check.share;
+  match.settled = true;
+  return match;
 }
 
 std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vector<Surfel>& frame,
@@ -135,6 +176,7 @@ void Odometry::tell_doubt(OdometryStep& step) {
 void Odometry::start_segment(StampNs stamp_ns) {
   log::warning("odometry lost for {:.1f} s: a new segment starts", to_seconds(stamp_ns - anchored_ns_));
   map_.clear();
+  standing_.forget();
   ++segment_;
   motion_.restart();
   covariance_.setZero();
@@ -152,6 +194,22 @@ void Odometry::remember(const DepthImage& image, const std::vector<Surfel>& fram
   T_odom_keyframe_ = T_odom_sensor;
 }
 
+/// A reference stays while the device is near it: a frame in which somebody covers what shows that it stands
+/// does not make a new one.
+void Odometry::refer(const DepthImage& image, const OdometryStep& step) {
+  standing_.next(image);
+  if (step.method == "standing") {
+    stood_ns_ = image.stamp_ns;
+    ++stood_;
+  }
+  if (step.method == "standing" || !step.converged || step.doubtful) return;
+  const bool left = gone_ >= (stood_ >= kProven ? kProven : 1);
+  if (standing_.has_reference() && !left && image.stamp_ns - stood_ns_ <= kReferAfter) return;
+  standing_.refer(step.T_odom_sensor);
+  stood_ns_ = image.stamp_ns;
+  stood_ = gone_ = 0;
+}
+
 OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,
                             ImuTrack* imu) {
   OdometryStep step;
@@ -166,7 +224,10 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
     if (usable && map_.size() > 0 && image.stamp_ns - anchored_ns_ > options_.bridge_ns)
       start_segment(image.stamp_ns);
     std::optional<ScanMatch> matched;
-    if (usable && map_.size() > 0 && options_.method != LocalMethod::dead_reckoning)
+    if (usable && options_.method == LocalMethod::cloud) matched = stand(image, expected);
+    if (matched)
+      step.method = "standing";
+    else if (usable && map_.size() > 0 && options_.method != LocalMethod::dead_reckoning)
       matched = match(image, frame, expected, step);
     if (matched)
       accept(*matched, from, expected, imu, step);
@@ -181,6 +242,7 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
     anchored_ns_ = image.stamp_ns;
     unmatched_ns_ = 0;
   }
+  if (usable && options_.method == LocalMethod::cloud) refer(image, step);
   step.segment = segment_;
   T_odom_last_ = step.T_odom_sensor;
   last_ns_ = image.stamp_ns;

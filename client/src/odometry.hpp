@@ -3,6 +3,7 @@
 
 #include "client/src/engine.hpp"
 #include "client/src/motion_model.hpp"
+#include "client/src/standing_view.hpp"
 
 namespace liloc {
 
@@ -31,7 +32,7 @@ struct OdometryOptions {
 /// What the odometry says of a frame.
 struct OdometryStep {
   Pose T_odom_sensor = Pose::Identity();
-  std::string method;     ///< "first", "icp", "ransac", "inertial", "guess"
+  std::string method;     ///< "first", "icp", "ransac", "inertial", "standing", "guess"
   bool converged = true;  ///< the pose was measured
   bool doubtful = false;  ///< but may follow somebody who walks, or be one place of several
   bool jumped = false;    ///< and sight, after a stretch without, corrected what had been guessed
@@ -65,6 +66,8 @@ class Odometry {
  private:
   [[nodiscard]] std::optional<ScanMatch> match_near(const std::vector<Surfel>& frame, const MotionGuess& guess,
                                                     const MatchCheck& check, StampNs stamp_ns) const;
+  /// At the reference's pose, where the view says that the device stands there.
+  [[nodiscard]] std::optional<ScanMatch> stand(const DepthImage& image, const MotionGuess& guess);
   /// From the guess, and by features where that fails.
   [[nodiscard]] std::optional<ScanMatch> match(const DepthImage& image, const std::vector<Surfel>& frame,
                                                const MotionGuess& guess, OdometryStep& step);
@@ -74,15 +77,19 @@ class Odometry {
   void reckon(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step);
   void coast(const MotionGuess& guess, const FrameStep& from, bool usable, OdometryStep& step);
   void start_segment(StampNs stamp_ns);
+  void refer(const DepthImage& image, const OdometryStep& step);
   void tell_doubt(OdometryStep& step);
   void remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor);
 
   OdometryOptions options_;
   LocalMap map_;
   MotionModel motion_;
+  StandingView standing_;
   std::uint32_t segment_ = 0;
   StampNs last_ns_ = 0;       ///< of the last frame
   StampNs unmatched_ns_ = 0;  ///< of the first usable frame since the last match that fits nothing; 0: none
+  int stood_ = 0, gone_ = 0;  ///< frames at the reference, and frames in a row that surely are not
+  StampNs stood_ns_ = 0;      ///< of the last frame that stood where its reference was taken
   StampNs anchored_ns_ = 0;   ///< of the last matched frame
   StampNs keyframe_ns_ = 0;
   StampNs recovered_ns_ = 0;  ///< of the last attempt by features

@@ -125,11 +125,12 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
   const auto& f = run.frames;
   double path = 0, good = 0, jump_m = 0;
   std::vector<double> latency, step_mm, residual_mm;
-  int icp = 0, ransac = 0, guess = 0, dull = 0;
+  int icp = 0, standing = 0, ransac = 0, guess = 0, dull = 0;
   for (std::size_t i = 0; i < f.size(); ++i) {
     latency.push_back(f[i].latency_ms);
     if (f[i].residual_m > 0) residual_mm.push_back(1e3 * f[i].residual_m);
     icp += f[i].method == "icp" || f[i].method == "inertial";
+    standing += f[i].method == "standing";
     ransac += f[i].method == "ransac";
     guess += f[i].method == "guess";
     dull += !f[i].informative;
@@ -154,13 +155,14 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
       "{:28} path {:5.2f} m  end {:5.1f} mm {:5.2f} %  {:5.2f} deg  rms {:.1f} mm  second {:.1f}/{:.1f} mm "
       "{:.2f} deg  pairs {:.3f} (median {:.1f} mm, jump "
       "{:.0f} mm)  "
-      "latency {:.2f}/{:.2f} ms  icp {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc {} B  "
+      "latency {:.2f}/{:.2f} ms  icp {} standing {} ransac {} guess {} dull {} segments {}  up {:.2f} deg  lpc "
+      "{} B  "
       "around {} B  residual {:.1f} mm  {:.1f} ms of CPU per second  {}/{} motions within 3 sd{}{}\n",
       name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
       degrees(rotation_angle_rad(end)), 1e3 * spread.trajectory_m, 1e3 * spread.second_median_m,
       1e3 * spread.second_p90_m, degrees(spread.second_median_rad), good / static_cast<double>(f.size() - 1),
-      quantile(step_mm, 0.5), 1e3 * jump_m, quantile(latency, 0.5), quantile(latency, 0.9), icp, ransac, guess,
-      dull, f.back().odom_segment + 1, run.worst_up_deg,
+      quantile(step_mm, 0.5), 1e3 * jump_m, quantile(latency, 0.5), quantile(latency, 0.9), icp, standing,
+      ransac, guess, dull, f.back().odom_segment + 1, run.worst_up_deg,
       run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)),
       run.extra_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
       1e3 * run.cpu_s / seconds, run.motions_within, run.motions,

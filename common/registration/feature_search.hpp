@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "common/registration/candidate.hpp"
+#include "common/registration/feature_samples.hpp"
 #include "common/registration/fpfh.hpp"
 #include "common/registration/target.hpp"
 
@@ -22,11 +22,13 @@ struct DescribeOptions {
 [[nodiscard]] Described describe(const Cloud& thinned, const DescribeOptions& options);
 
 struct FeatureSearchOptions {
-  bool grid = true;          ///< Algorithm 2; false: one cell over everything
-  double cell_m = 2.5;       ///< half the width of a cell
-  int iterations = 60000;    ///< three-point samples, over all cells
+  bool grid = true;        ///< Algorithm 2; false: one cell over everything
+  double cell_m = 2.5;     ///< half the width of a cell
+  int iterations = 60000;  ///< samples, over all cells
+  Sample sample = Sample::three_points;
   bool free_space = true;    ///< samples lose by points in empty space; false: fitness alone, as in the paper
   double edge_ratio = 0.85;  ///< the sides of both triangles agree to this share
+  double spacing_m = 0.1;    ///< of the described points, for samples of two normals
   std::size_t propose = 40;
   std::size_t keep_per_cell = 24;  ///< samples; many are of one place
   std::uint64_t seed = 1;

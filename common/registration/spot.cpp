@@ -12,7 +12,6 @@ namespace {
 constexpr double kContradicts_rad = radians(5.0);  // planes tell up to a degree or two
 constexpr double kSure = 0.5;                      // confidence above which planes may contradict the device
 constexpr int kSketchIterations = 6;
-constexpr double kRival = 0.5;  // of the likeliest direction's confidence: less likely ones are not tried
 
 }  // namespace
 
@@ -36,9 +35,7 @@ std::vector<UpPair> ups_to_try(const SpotProblem& problem) {
     if (sure && !agree) ups.push_back({planes.front().up, problem.ups_map.front()});
     return ups;
   }
-  for (const UpHypothesis& plane : planes)
-    for (const Eigen::Vector3d& up_map : problem.ups_map)
-      if (plane.confidence >= kRival * planes.front().confidence) ups.push_back({plane.up, up_map});
+  if (!planes.empty()) ups.push_back({planes.front().up, problem.ups_map.front()});
   return ups;
 }
 

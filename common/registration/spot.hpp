@@ -54,8 +54,9 @@ struct UpPair {
   Eigen::Vector3d sensor, map;
   bool borne_out = false;  ///< the device's gravity and the planes it sees agree
 };
-/// What to search with, likeliest first: gravity as the device says, unless the planes it sees contradict, and
-/// what floors, ceilings and walls tell.
+/// What to search with, likeliest first: gravity as the device says, and where the planes it sees contradict,
+/// as they say. Of a device that says nothing, the likeliest that its planes say, alone: features find sooner
+/// what that misses.
 [[nodiscard]] std::vector<UpPair> ups_to_try(const SpotProblem& problem);
 
 class GravityProposer final : public Proposer {

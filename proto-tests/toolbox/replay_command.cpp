@@ -45,7 +45,7 @@ void add_replay(CLI::App& app, int& exit_code) {
                    "liloc, or for comparison: paper, dynamic-noopt, dynamic-nover, static-noopt")
       ->capture_default_str();
   command->add_option("--verify", options->verify, "tracks, paper or none; else the method's own");
-  command->add_option("--risk", options->risk, "With which a verified answer may be wrong")
+  command->add_option("--risk", options->risk, "Of all verified answers, the share that may be wrong")
       ->capture_default_str();
   command->add_option("--icp", options->icp, "point or plane; else the method's own");
   command->add_option("--local", options->local, "Local registration: cloud, inertial or dead-reckoning")

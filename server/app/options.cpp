@@ -54,8 +54,8 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   method
       ->add_option(
           "--risk", options.localizer.risk,
-          "An answer is verified where it is wrong (over 10 deg or 0.3 m) with at most this probability")
-      ->check(CLI::Range(1e-6, 0.5))
+          "Of all verified answers, the share that may be wrong (over 10 deg or 0.3 m)")
+      ->check(CLI::Range(1e-6, 0.3))
       ->capture_default_str();
   method->add_option("--icp", raw.icp,
                      "Last refinement: plane, or point as in the paper; else the method's own");

@@ -49,7 +49,7 @@ class Session {
   Hypothesis follow(const SpotRequest& request, const Spot& spot);
   void search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here, SpotReply* reply);
   void report_followed(const Hypothesis& here, SpotReply* reply) const;
-  [[nodiscard]] bool enough(double confidence) const { return confidence >= 1 - verify_.risk; }
+  [[nodiscard]] bool enough(double confidence) const { return confidence >= least_confidence(verify_.risk); }
 
   const LocalizerOptions options_;
   VerifyOptions verify_;

@@ -19,6 +19,16 @@ bool convincing(const std::vector<Hypothesis>& found) {
          margin_of(found) > 0.15;
 }
 
+/// Samples of two normals, which find places of little overlap and of no gravity that three points miss.
+FeatureSearchOptions sampled_by_normals(double voxel_size_m) {
+  FeatureSearchOptions features;
+  features.sample = Sample::two_normals;
+  features.spacing_m = 2 * voxel_size_m;
+  features.keep_per_cell = 200;  // as many again are of one place
+  features.propose = 60;         // as many as are judged
+  return features;
+}
+
 /// Merges two lists of hypotheses, best first, one per place.
 std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypothesis>& b) {
   for (const Hypothesis& h : b)
@@ -120,7 +130,7 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
   }
   if (convincing(found)) return found;
   std::vector<Hypothesis> by_features =
-      judge_candidates(problem, FeatureProposer(FeatureSearchOptions{}).propose(problem));
+      judge_candidates(problem, FeatureProposer(sampled_by_normals(options.voxel_size_m)).propose(problem));
   std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
   return merged(std::move(found), by_features);
 }

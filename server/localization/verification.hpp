@@ -10,13 +10,20 @@ namespace liloc {
 struct VerifyOptions {
   EqualityThresholds equality;
   TrackOptions tracks;
-  double risk = 1e-3;  ///< an answer is verified where it is wrong with at most this probability
+  double risk = 1e-3;  ///< of all verified answers, the share that may be wrong; see `least_confidence`
   double locked_sd_rad = radians(1.0), locked_sd_m = 0.05;  ///< least, to hold a refinement near its start
   double prior_residual_sd_m = 0.05;                        ///< of a pair of it
   double step_sd_rad = radians(0.2),
          step_sd_m = 0.008;  ///< least growth between spots: calibration and clocks err too
   int research_every = 6;    ///< while following, every so many spots the whole room is searched
 };
+
+/// What an answer's confidence must be. Most are far surer than the least sure one that is verified: on worlds
+/// that the model was not fitted on, those told as at most 3 in 1000 wrong were wrong in under 1 of 1000
+/// (CONFIDENCE.md).
+[[nodiscard]] inline double least_confidence(double risk) {
+  return 1 - 3 * risk;
+}
 
 /// What the newest search came to; kept, so that other models can be fitted to it without another search.
 struct Evidence {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "common/registration/align.hpp"
 #include "common/registration/feature_search.hpp"
 #include "common/registration/tests/watched_room.hpp"
@@ -51,6 +53,21 @@ TEST_P(SearchLaw, FeaturesNeedNoGravityAndTheirCellsNoOrder) {
   const auto found = judge_candidates(w.problem(), one);
   ASSERT_FALSE(found.empty());
   EXPECT_TRUE(near(found.front().T_map_sensor(), w.T_map_device));
+}
+
+TEST_P(SearchLaw, TwoNormalsFindThePlaceWithAThirdOfTheSamples) {
+  const WatchedRoom w = watched_room(GetParam());
+  const Described room = describe(w.target->coarse, {0.5, 1.0, 1}),
+                  device = describe(w.query.medium, {0.5, 1.0, 1});
+  FeatureSearchOptions options;
+  options.sample = Sample::two_normals;
+  options.iterations = 20000;
+  const auto candidates = feature_search(w.target, room, w.query, device, options);
+  const auto right = std::count_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
+    return distance_m(c.T_map_sensor, w.T_map_device) < 0.3 &&
+           degrees(angle_between_rad(c.T_map_sensor, w.T_map_device)) < 10;
+  });
+  EXPECT_GT(right, 0);
 }
 
 TEST_P(SearchLaw, CellsOverlapAndHoldEveryPointOfTheRoom) {

@@ -103,6 +103,16 @@ TEST_P(UpLaw, AToldUpIsOnlyContradictedWhenItIsWrong) {
   EXPECT_LT(apart_deg(ups[1].sensor, w.up_device), 1.5);
 }
 
+TEST_P(UpLaw, WithoutAWordOfTheDeviceTheLikeliestDirectionAloneIsSearched) {
+  const WatchedRoom w = watched_room(GetParam());
+  SpotProblem problem{w.target, w.query};
+  problem.ups_map.push_back(Eigen::Vector3d::UnitX());
+  const auto ups = ups_to_try(problem);
+  ASSERT_EQ(ups.size(), 1U);
+  EXPECT_EQ(ups[0].map, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(ups[0].sensor, find_up(w.query.medium).front().up);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, UpLaw, testing::Range(1U, 17U));
 
 TEST(FindUp, WithoutPlanesThereIsNone) {

@@ -3,6 +3,8 @@
 
   fit_confidence.py [--svg FILE] [--penalty 3e-5] [--risk 1e-3] WORLD[:WEIGHT]=ROWS.csv ...
 
+A world whose name ends in * is several: one for each first word of its sites' names.
+
 ROWS.csv is what `liloc_spot_bench --evidence` writes. Prints, for each world, how the model that was fitted on the
 others does there, then the calibration over all worlds held out, then the coefficients of all together as C++.
 Needs python3-scipy."""
@@ -157,15 +159,17 @@ def main():
     parser.add_argument("worlds", nargs="+", metavar="WORLD[:WEIGHT]=ROWS.csv")
     parser.add_argument("--svg", help="write a reliability diagram")
     parser.add_argument("--penalty", type=float, default=3e-5, help="on squared coefficients")
-    parser.add_argument("--risk", type=float, default=1e-3, help="with which an answer is verified")
+    parser.add_argument("--risk", type=float, default=1e-3, help="the share of verified answers that may be wrong")
     args = parser.parse_args()
     worlds, weights = {}, {}
     for argument in args.worlds:
         name, _, path = argument.partition("=")
         name, _, weight = name.partition(":")
-        worlds[name] = worlds.get(name, []) + spots_of(path)
-        weights[name] = float(weight or 1)
-    rows, limit = Rows(worlds, weights), np.log((1 - args.risk) / args.risk)
+        for spot in spots_of(path):
+            world = name[:-1] + spot["site"][0].split()[0] if name.endswith("*") else name
+            worlds.setdefault(world, []).append(spot)
+            weights[world] = float(weight or 1)
+    rows, limit = Rows(worlds, weights), np.log((1 - 3 * args.risk) / (3 * args.risk))
     print("| world held out | devices | answers | right | log loss | right ones refused: history | cold | wrong verified | located within 3 s |\n|---|---|---|---|---|---|---|---|---|")
     held_odds, held_right = [], []
     for name in worlds:

@@ -121,14 +121,11 @@ class Trial {
     Device& d = *devices_[device];
     if (options_.peer_every > 0 && spots_++ % options_.peer_every == 0) keep_for_peers(asked, overlap);
     const double cold_ms = thread_cpu_ms();
-    SpotReply cold = localizer_.locate(alone);
+    SpotReply cold = options_.evidence ? weighed(alone, d, overlap, asked) : localizer_.locate(alone);
     const double live_ms = thread_cpu_ms();
-    SpotReply live = localizer_.locate(asked.request);
+    SpotReply live =
+        options_.evidence ? weighed(asked.request, d, overlap, asked) : localizer_.locate(asked.request);
     const double done_ms = thread_cpu_ms();
-    if (options_.evidence) {
-      weigh(alone, d, overlap, asked);
-      weigh(asked.request, d, overlap, asked);
-    }
     d.engine.add_reply(live);
     add_row(std::move(cold), true, live_ms - cold_ms, overlap, asked);
     add_row(std::move(live), false, done_ms - live_ms, overlap, asked);
@@ -143,12 +140,12 @@ class Trial {
                                 asked.T_map_sensor_true, overlap, result_.rows.size()});
   }
 
-  /// Keeps what a session's answer rests on, when it believes nothing.
-  void weigh(const SpotRequest& request, Device& device, double overlap, const Asked& asked) {
+  /// The answer of a session that believes nothing; what it rests on is kept.
+  SpotReply weighed(const SpotRequest& request, Device& device, double overlap, const Asked& asked) {
     const auto snapshot = cloud_.nearest(request.match_stamp_ns());
-    if (!snapshot) return;
+    if (!snapshot) return refusal(request, Reason::no_gpc, snapshot.error().message);
     const auto spot = Spot::create(request, *snapshot, server_options_);
-    if (!spot) return;
+    if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);
     if (!device.first_asked_ns) device.first_asked_ns = request.stamp_ns;
     SpotReply reply = refusal(request, Reason::none, "");
     device.doubting->answer(request, *spot, &reply);
@@ -158,9 +155,11 @@ class Trial {
       evidence.places[i].sd_m =
           PoseEstimate{T, pose_covariance((*spot)->problem().target, (*spot)->query(), T)}.sd_m();
     }
+    std::vector<bool> right = against_truth(evidence, asked.T_map_sensor_true);
     result_.evidence.push_back({stage_.name, request.client_id, stage_.seed, request.cold,
                                 to_seconds(request.stamp_ns - *device.first_asked_ns), overlap,
-                                against_truth(evidence, asked.T_map_sensor_true), std::move(evidence)});
+                                std::move(right), std::move(evidence)});
+    return reply;
   }
 
   void add_row(SpotReply reply, bool cold, double cpu_ms, double overlap, const Asked& asked) {

@@ -11,7 +11,7 @@ struct TrialOptions {
   int peer_every = 0;     ///< of so many spots one is kept for the peers; 0: none
   int threads = 1;        ///< per request
   bool gravity = true;    ///< whether requests say where up is
-  bool evidence = false;  ///< gather it besides, of searches alone and of a session that never believes
+  bool evidence = false;  ///< gather it; all answers are then of sessions that never believe what they find
 };
 
 struct TrialResult {

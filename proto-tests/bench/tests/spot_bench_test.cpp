@@ -45,12 +45,9 @@ class SpotBench : public testing::Test {
     for (const std::uint64_t seed : {8U, 110U, 112U, 114U}) {
       auto stage = simulated_stage(seed, 8);
       ASSERT_TRUE(stage) << "seed " << seed << ": " << stage.error().message;
-      TrialOptions options;
-      options.evidence = true;
-      const auto result = run_trial(std::move(*stage), options);
+      const auto result = run_trial(std::move(*stage), {});
       ASSERT_TRUE(result) << "seed " << seed << ": " << result.error().message;
       all.rows.insert(all.rows.end(), result->rows.begin(), result->rows.end());
-      all.evidence.insert(all.evidence.end(), result->evidence.begin(), result->evidence.end());
     }
   }
   static inline TrialResult all;
@@ -69,21 +66,21 @@ TEST_F(SpotBench, NoVerifiedAnswerIsWrong) {
         << "seed " << row.seed << " seq " << row.reply.seq << " off by " << row.error_m << " m";
 }
 
-TEST_F(SpotBench, EvidenceTellsOfEverySearchAndItsModelIsTheSessions) {
-  ASSERT_EQ(all.evidence.size(), all.rows.size()) << "a cold search and one with history";
-  for (const EvidenceRow& row : all.evidence) {
-    ASSERT_EQ(row.right.size(), row.evidence.places.size());
-    if (row.evidence.places.empty()) continue;
-    EXPECT_DOUBLE_EQ(row.evidence.log_odds, log_odds_of(row.evidence.places));
-    EXPECT_LE(std::ranges::count(row.right, true), 1) << "places are apart";
-  }
-}
-
-TEST_F(SpotBench, EvidenceIsATableWithALinePerPlace) {
-  const std::string path = testing::TempDir() + "spot_bench_evidence.csv";
-  ASSERT_TRUE(write_evidence(path, all.evidence));
+TEST(SpotBenchEvidence, TellsOfEverySearchAndIsATableWithALinePerPlace) {
+  auto stage = simulated_stage(8, 4);
+  ASSERT_TRUE(stage) << stage.error().message;
+  TrialOptions options;
+  options.evidence = true;
+  const auto trial = run_trial(std::move(*stage), options);
+  ASSERT_TRUE(trial) << trial.error().message;
+  ASSERT_EQ(trial->evidence.size(), trial->rows.size()) << "a cold search and one with history";
   std::size_t places = 0, lines = 0;
-  for (const EvidenceRow& row : all.evidence) places += row.evidence.places.size();
+  for (const EvidenceRow& row : trial->evidence) {
+    ASSERT_EQ(row.right.size(), row.evidence.places.size());
+    places += row.right.size();
+  }
+  const std::string path = testing::TempDir() + "spot_bench_evidence.csv";
+  ASSERT_TRUE(write_evidence(path, trial->evidence));
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) ++lines;
   EXPECT_EQ(lines, places + 1);

@@ -82,10 +82,9 @@ Status Daemon::open_client() {
       [this](const client::PoseUpdate& update) {
         if (ros_) ros_->tell(update);
       },
-      [this](const client::Reply& reply) {
+      [](const client::Reply& reply) {
         log::debug("reply to {}: {} ({}), confidence {:.4f}; {}", reply.stamp_ns, reply.status, reply.reason,
                    reply.confidence, reply.text);
-        if (ros_) ros_->take(reply);
       });
   if (!made) return fail("{}", made.error());
   client_ = std::move(made.value());

@@ -99,6 +99,12 @@ void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
           "of --interval-ms")
       ->check(CLI::Range(0, 60'000))
       ->capture_default_str();
+  method->add_option("--lost-sd-m", c.lost_sd_m, "Standard deviation of the pose beyond which it is lost")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  method->add_option("--lost-sd-deg", c.lost_sd_deg, "The same in degrees")
+      ->check(CLI::Range(0.1, 180.0))
+      ->capture_default_str();
   method->add_option("--reply-timeout-ms", c.reply_timeout_ms, "A request older than so counts as unanswered")
       ->check(CLI::Range(100, 600'000))
       ->capture_default_str();

@@ -29,6 +29,8 @@ const char* name_of(client::State state) {
       return "tracking";
     case client::State::coasting:
       return "coasting";
+    case client::State::lost:
+      return "lost";
   }
   return "unknown";
 }
@@ -57,18 +59,14 @@ void RosFace::tell(const client::PoseUpdate& update) {
   }
   if (told && update.T_map_sensor) {
     const Pose T_map_sensor = to_domain(*update.T_map_sensor);
-    told = publisher_.publish_pose(update.stamp_ns, T_map_sensor, covariance_);
+    told = publisher_.publish_pose(
+        update.stamp_ns, T_map_sensor,
+        Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(update.covariance.data()));
     const Pose T_map_odom = slew_.follow(update.stamp_ns, T_map_sensor * T_odom_sensor.inverse(), T_odom_sensor,
                                          update.odom_segment);
     if (told) told = publisher_.publish_map_odom(update.stamp_ns + ahead_ns_, T_map_odom);
   }
   if (!told) log::warning("{}: not published: {}", id_, told.error().message);
-}
-
-void RosFace::take(const client::Reply& reply) {
-  if (!reply.verified) return;
-  const std::scoped_lock lock(mutex_);
-  covariance_ = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(reply.covariance.data());
 }
 
 wire::Diagnosis diagnosis_of(const std::string& id, const client::PoseUpdate& newest, const client::Stats& s,

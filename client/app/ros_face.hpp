@@ -16,8 +16,6 @@ class RosFace {
 
   /// A frame was processed: pose, odometry and transforms.
   void tell(const client::PoseUpdate& update);
-  /// The covariance of a verified answer holds for the poses that follow it.
-  void take(const client::Reply& reply);
   /// The state of the client as ROS's tools show it. `silent`: no frame came since the last call.
   void diagnose(const client::PoseUpdate& newest, const client::Stats& stats, bool silent);
 
@@ -30,14 +28,13 @@ class RosFace {
   const wire::RosPublisher publisher_;
   std::mutex mutex_;  ///< all below
   MapOdomSlew slew_;
-  Matrix6d covariance_ = Matrix6d::Identity();  ///< of the newest verified answer
 };
 
 /// What `diagnose` says: level, one line, and the figures.
 [[nodiscard]] wire::Diagnosis diagnosis_of(const std::string& id, const client::PoseUpdate& newest,
                                            const client::Stats& stats, bool silent);
 
-/// "searching", "tracking", "coasting".
+/// "searching", "tracking", "coasting", "lost".
 [[nodiscard]] const char* name_of(client::State state);
 
 }  // namespace liloc

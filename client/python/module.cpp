@@ -42,7 +42,8 @@ void declare_values(py::module_& module) {
   py::enum_<State>(module, "State")
       .value("SEARCHING", State::searching)
       .value("TRACKING", State::tracking)
-      .value("COASTING", State::coasting);
+      .value("COASTING", State::coasting)
+      .value("LOST", State::lost);
   py::class_<Stats>(module, "Stats")
       .def_readonly("frames", &Stats::frames)
       .def_readonly("frames_dropped", &Stats::frames_dropped)
@@ -80,6 +81,10 @@ void declare_answers(py::module_& module) {
       .def_readonly("server_connected", &PoseUpdate::server_connected)
       .def_property_readonly("observed",
                              [](const PoseUpdate& u) { return py::array_t<double>(6, u.observed.data()); })
+      .def_property_readonly("covariance",
+                             [](const PoseUpdate& u) {
+                               return py::array_t<double>({6, 6}, u.covariance.data());
+                             })
       .def("__repr__", &text_of);
   py::class_<Reply>(module, "Reply")
       .def_readonly("stamp_ns", &Reply::stamp_ns)
@@ -118,7 +123,8 @@ void declare_client(py::module_& module) {
                        const py::object& T_imu_sensor, double still_seconds, bool cold, std::uint64_t seed,
                        std::size_t queue_frames, std::string trace_folder, const py::object& T_base_sensor,
                        double cpu_share, bool submap, std::size_t request_bytes, int searching_interval_ms,
-                       const py::object& on_pose, const py::object& on_reply) {
+                       double lost_sd_m, double lost_sd_deg, const py::object& on_pose,
+                       const py::object& on_reply) {
              Options o;
              o.id = std::move(id);
              o.camera = camera;
@@ -139,6 +145,8 @@ void declare_client(py::module_& module) {
              o.submap = submap;
              o.request_bytes = request_bytes;
              o.searching_interval_ms = searching_interval_ms;
+             o.lost_sd_m = lost_sd_m;
+             o.lost_sd_deg = lost_sd_deg;
              return make_client(std::move(o), local, T_imu_sensor, T_base_sensor, on_pose, on_reply);
            }),
            "id"_a, "camera"_a, py::kw_only(), "domain"_a = d.domain,
@@ -148,8 +156,8 @@ void declare_client(py::module_& module) {
            "still_seconds"_a = d.still_seconds, "cold"_a = d.cold, "seed"_a = d.seed,
            "queue_frames"_a = d.queue_frames, "trace_folder"_a = d.trace_folder, "T_base_sensor"_a = py::none(),
            "cpu_share"_a = d.cpu_share, "submap"_a = d.submap, "request_bytes"_a = d.request_bytes,
-           "searching_interval_ms"_a = d.searching_interval_ms, "on_pose"_a = py::none(),
-           "on_reply"_a = py::none())
+           "searching_interval_ms"_a = d.searching_interval_ms, "lost_sd_m"_a = d.lost_sd_m,
+           "lost_sd_deg"_a = d.lost_sd_deg, "on_pose"_a = py::none(), "on_reply"_a = py::none())
       .def("push_depth", &PythonClient::push_depth, "depth"_a, "stamp_ns"_a)
       .def("push_imu", &PythonClient::push_imu, "stamps_ns"_a, "samples"_a)
       .def("push_points", &PythonClient::push_points, "points"_a, "stamp_ns"_a)

@@ -78,6 +78,8 @@ liloc_client_options default_options() {
   o.submap = d.submap;
   o.request_bytes = d.request_bytes;
   o.searching_interval_ms = d.searching_interval_ms;
+  o.lost_sd_m = d.lost_sd_m;
+  o.lost_sd_deg = d.lost_sd_deg;
   return o;
 }
 
@@ -110,6 +112,8 @@ Result<Options> options_from(const liloc_client_options* options, std::size_t si
   out.submap = o.submap;
   if (o.request_bytes != 0) out.request_bytes = o.request_bytes;  // 0 from programs older than the field
   out.searching_interval_ms = o.searching_interval_ms;
+  if (o.lost_sd_m != 0) out.lost_sd_m = o.lost_sd_m;  // 0 from programs older than the fields
+  if (o.lost_sd_deg != 0) out.lost_sd_deg = o.lost_sd_deg;
   return out;
 }
 
@@ -125,6 +129,7 @@ liloc_pose_update to_c(const PoseUpdate& update) {
   u.state = static_cast<std::int32_t>(update.state);
   u.server_connected = update.server_connected;
   std::copy(update.observed.begin(), update.observed.end(), u.observed);
+  std::copy(update.covariance.begin(), update.covariance.end(), u.covariance);
   return u;
 }
 
@@ -174,6 +179,7 @@ liloc_stats to_c(const Stats& stats) {
 static_assert(LILOC_LOCAL_EXTERNAL == static_cast<int>(Local::external));
 static_assert(LILOC_LOCAL_DEAD_RECKONING == static_cast<int>(Local::dead_reckoning));
 static_assert(LILOC_LOCAL_INERTIAL == static_cast<int>(Local::inertial));
+static_assert(LILOC_LOST == static_cast<int>(State::lost));
 static_assert(LILOC_COASTING == static_cast<int>(State::coasting));
 static_assert(LILOC_TRACKING == static_cast<int>(State::tracking));
 

@@ -7,6 +7,7 @@
 #include "client/src/map_link.hpp"
 #include "client/src/odometry.hpp"
 #include "client/src/points_view.hpp"
+#include "client/src/pose_doubt.hpp"
 #include "client/src/request_maker.hpp"
 #include "client/src/request_schedule.hpp"
 #include "common/base/log.hpp"
@@ -83,6 +84,7 @@ struct Engine::Impl {
   InputHealth inputs;
   RequestSchedule schedule;
   RequestMaker requests;
+  PoseDoubt doubt;
   MapLink link;
   StampNs last_ns = 0;
   bool started = false;
@@ -157,6 +159,7 @@ void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, cons
     external->mark();
   else
     odometry.mark();
+  doubt.asked(made->stamp_ns);
   schedule.sent(made->seq, made->stamp_ns);
   request = std::move(*made);
 }
@@ -185,7 +188,10 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.residual_m = step.residual_m;
   frame.observed = step.observed;
   inputs.note(spread.fault, step.residual_m, step.strain);
+  doubt.travelled(image.stamp_ns, step, requests.motion_sd(), inputs.contradicted());
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
+  if (const auto estimate = doubt.estimate(); estimate && frame.T_map_sensor)
+    frame.covariance = estimate->covariance;
   frame.latency_ms = watch.elapsed_ms();
   ask_if_due(image, points, *placed);
   return frame;
@@ -227,7 +233,7 @@ std::vector<std::uint64_t> Engine::take_unanswered() {
 
 void Engine::add_reply(const SpotReply& reply) {
   impl_->schedule.answered(reply, impl_->last_ns);
-  impl_->link.add(reply, impl_->segment);
+  if (impl_->link.add(reply, impl_->segment)) impl_->doubt.verified(reply);
   if (impl_->link.located(impl_->segment)) impl_->schedule.search_ended();
 }
 
@@ -243,6 +249,9 @@ std::optional<Pose> Engine::T_map_odom() const {
 }
 
 Tracking Engine::tracking() const {
+  const auto estimate = impl_->doubt.estimate();
+  const EngineOptions& o = impl_->options;
+  if (estimate && (estimate->sd_m() > o.lost_sd_m || estimate->sd_rad() > o.lost_sd_rad)) return Tracking::lost;
   return impl_->link.tracking(impl_->last_ns, impl_->segment);
 }
 

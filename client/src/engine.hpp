@@ -33,6 +33,8 @@ struct EngineOptions {
   /// Lower bound between registrations while nothing is verified; 0: a quarter of the interval. Cold: none.
   StampNs searching_interval_ns = 0;
   std::size_t request_bytes = 15'000;  ///< most, of a request's clouds: the surroundings give way first
+  /// Standard deviations beyond which the device is lost: the paper counts poses off by so much as wrong.
+  double lost_sd_m = 0.3, lost_sd_rad = radians(10);
 };
 
 /// A pose by the odometry of somebody else, in a frame of its own that never jumps.
@@ -58,9 +60,11 @@ struct FrameResult {
   /// Share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1:
   /// beside a bare wall it is near 0 along the wall, and the pose follows the guess there. All 0 for a guess.
   Vector6d observed = Vector6d::Zero();
+  std::optional<Matrix6d> covariance;  ///< of T_map_sensor, [rad; m], sensor axes: PoseDoubt
 };
 
-enum class Tracking { searching, tracking, coasting };  ///< coasting: located once, the server is silent
+/// coasting: located once, the server is silent; lost: located once, but the pose may be anywhere by now.
+enum class Tracking { searching, tracking, coasting, lost };
 
 /// Not thread-safe except where said; stamps rise.
 class Engine {

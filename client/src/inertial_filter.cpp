@@ -135,6 +135,17 @@ void InertialFilter::doubt(double seconds, double accel_sd_m_s2, double turn_sd_
   P_.block<3, 3>(kVelocity, kPlace).diagonal().array() += moved * sped;
 }
 
+void InertialFilter::stop(double velocity_sd_m_s) {
+  state_.velocity_m_s.setZero();
+  auto variances = P_.diagonal().segment<3>(kVelocity);
+  variances = variances.cwiseMax(velocity_sd_m_s * velocity_sd_m_s).eval();
+}
+
+void InertialFilter::loosen(double velocity_sd_m_s, double accel_sd_m_s2) {
+  P_.diagonal().segment<3>(kVelocity).array() += velocity_sd_m_s * velocity_sd_m_s;
+  P_.diagonal().segment<3>(kGravity).array() += accel_sd_m_s2 * accel_sd_m_s2;
+}
+
 void InertialFilter::place(const Pose& T_odom_imu, const Vector3d& velocity_m_s, double velocity_sd_m_s) {
   state_.T_odom_imu = T_odom_imu;
   state_.velocity_m_s = velocity_m_s;

@@ -40,6 +40,15 @@ class InertialFilter {
   /// The device is found elsewhere, or lost: pose and velocity are new and vague, biases and gravity stay.
   void place(const Pose& T_odom_imu, const Eigen::Vector3d& velocity_m_s, double velocity_sd_m_s);
 
+  /// The pose stays where it is, though nobody knows whether the device does: its doubt goes on growing, by a
+  /// speed of this deviation at least.
+  void stop(double velocity_sd_m_s);
+  /// What the measurements taught may be off by more than their covariance says: people that they followed, a
+  /// map that errs. It shows when nothing is measured, and adds up with the time and with its square.
+  void loosen(double velocity_sd_m_s, double accel_sd_m_s2);
+  /// Adds to the pose's covariance, axes as `settle` has them.
+  void widen(const Matrix6d& covariance) { P_.topLeftCorner<6, 6>() += covariance; }
+
   /// How far the measurements of the last second were from the predictions, against what was expected: about 1.
   /// Where it is much more (a wrong mounting, wrong intrinsics), predictions are made vaguer.
   [[nodiscard]] double strain() const { return expected_ > 0 ? surprise_ / expected_ : 1; }

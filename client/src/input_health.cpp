@@ -32,11 +32,16 @@ double InputHealth::median_of(double Match::*figure) const {
   return median(std::move(values));
 }
 
+bool InputHealth::contradicted() const {
+  const auto strained = [](const Match& m) { return m.strain > kLargeStrain; };
+  return matches_.size() >= kFewestMatches &&
+         std::count_if(matches_.begin(), matches_.end(), strained) >= kStrainedMatches;
+}
+
 std::string InputHealth::problem() const {
   if (empty_ >= kEmptyFrames) return "depth frames hold hardly a return";
   if (matches_.size() < kFewestMatches) return "";
-  const auto strained = [](const Match& m) { return m.strain > kLargeStrain; };
-  if (std::count_if(matches_.begin(), matches_.end(), strained) >= kStrainedMatches)
+  if (contradicted())
     return fmt::format(
         "depth and IMU contradict each other ({:.1f} times what their noise explains): check T_imu_sensor, the "
         "stamps of both and the intrinsics",

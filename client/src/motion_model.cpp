@@ -21,6 +21,8 @@ constexpr double kGravity = 9.81;
 // What the filter starts from: m/s, rad/s, m/s^2.
 constexpr double kStoodVelocitySd = 0.05, kVagueVelocitySd = 0.5;
 constexpr double kCalibratedGyroSd = 5e-4, kCalibratedForceSd = 0.03;
+// What a blind stretch shows of the errors of velocity and gravity that matches had left: DECISIONS.md.
+constexpr double kBlindVelocitySd = 0.04, kBlindAccelSd = 0.05;
 constexpr StampNs kLongestStepNs = from_ms(1000);
 
 /// Turns errors of the IMU's pose into errors of the sensor's, odometry axes: `lever` leads from the sensor to
@@ -92,10 +94,12 @@ void MotionModel::start_filter(const FrameStep& step, const ImuTrack& imu) {
 }
 
 MotionGuess MotionModel::by_preintegration(const FrameStep& step, const ImuTrack& imu) {
-  if (!filter_)
+  if (!filter_) {
     start_filter(step, imu);
-  else if (filter_ns_ != step.from_ns)  // a gap in the samples
+  } else if (filter_ns_ != step.from_ns) {  // a gap in the samples
     filter_->place(step.T_odom_from * T_imu_sensor_->inverse(), velocity_odom_, kVagueVelocitySd);
+    filter_->widen(doubt_.pose());
+  }
   filter_->predict(imu.samples(step.from_ns, step.to_ns));
   filter_ns_ = step.to_ns;
   const Pose T = filter_->state().T_odom_imu * *T_imu_sensor_;
@@ -143,6 +147,7 @@ void MotionModel::relocated(const MotionGuess& measured) {
 }
 
 void MotionModel::fade(const FrameStep& step) {
+  if (by_filter() && step.anchored_ns == step.from_ns) filter_->loosen(kBlindVelocitySd, kBlindAccelSd);
   if (by_imu_) return;
   const double left = std::exp(-to_seconds(step.to_ns - step.from_ns) / kFadingS);
   velocity_odom_ *= left;
@@ -151,11 +156,12 @@ void MotionModel::fade(const FrameStep& step) {
 
 void MotionModel::restart() {
   halt();
+  if (filter_) filter_->place(filter_->state().T_odom_imu, Eigen::Vector3d::Zero(), kVagueVelocitySd);
   doubt_.restart();
 }
 
 void MotionModel::halt() {
-  if (filter_) filter_->place(filter_->state().T_odom_imu, Eigen::Vector3d::Zero(), kVagueVelocitySd);
+  if (filter_) filter_->stop(kVagueVelocitySd);
   velocity_odom_ = velocity_imu_odom_ = turn_rate_ = Eigen::Vector3d::Zero();
 }
 

@@ -32,7 +32,8 @@ class MotionModel {
   void learn(const FrameStep& step, const MotionGuess& guess, const MotionGuess& measured);
   /// The device was found without the guess.
   void relocated(const MotionGuess& measured);
-  /// A step that nobody measured and no IMU felt: the motion dies away.
+  /// A step that nobody measured: what no IMU felt dies away, and what an IMU felt is less sure than it was
+  /// while matches corrected it.
   void fade(const FrameStep& step);
   void halt();
   /// The map begins anew where the device is.

@@ -36,6 +36,8 @@ State to_public(Tracking tracking) {
       return State::tracking;
     case Tracking::coasting:
       return State::coasting;
+    case Tracking::lost:
+      return State::lost;
   }
   return State::searching;
 }
@@ -62,6 +64,10 @@ Status check_ranges(const Options& o) {
     return fail("options.request_bytes is {}; must be 2000..60000", o.request_bytes);
   if (o.searching_interval_ms < 0 || o.searching_interval_ms > 60'000)
     return fail("options.searching_interval_ms is {}; must be 0..60000", o.searching_interval_ms);
+  if (!(o.lost_sd_m >= 0.01 && o.lost_sd_m <= 100))
+    return fail("options.lost_sd_m is {}; must be 0.01..100", o.lost_sd_m);
+  if (!(o.lost_sd_deg >= 0.1 && o.lost_sd_deg <= 180))
+    return fail("options.lost_sd_deg is {}; must be 0.1..180", o.lost_sd_deg);
   if (o.T_base_sensor && o.local != Local::external)
     return fail("options.T_base_sensor is for odometry from outside: set options.local to Local::external");
   return {};
@@ -107,6 +113,8 @@ Result<SessionOptions> to_session(const Options& o) {
   s.engine.seed = o.seed;
   s.engine.request_bytes = o.request_bytes;
   s.engine.searching_interval_ns = from_ms(o.searching_interval_ms);
+  s.engine.lost_sd_m = o.lost_sd_m;
+  s.engine.lost_sd_rad = radians(o.lost_sd_deg);
   s.queue_frames = o.queue_frames;
   s.trace_folder = o.trace_folder;
   return s;
@@ -123,6 +131,8 @@ PoseUpdate to_public(const FrameResult& frame, Tracking tracking, bool connected
   update.state = to_public(tracking);
   update.server_connected = connected;
   std::copy_n(frame.observed.data(), 6, update.observed.begin());
+  if (frame.covariance)
+    Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(update.covariance.data()) = *frame.covariance;
   return update;
 }
 

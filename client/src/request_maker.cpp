@@ -41,6 +41,11 @@ void RequestMaker::travelled(StampNs stamp_ns, const OdometryStep& step, bool in
   path_.push_back({stamp_ns, step.T_odom_sensor, informative});
 }
 
+MotionSd RequestMaker::motion_sd() const {
+  return {std::hypot(kOdomSdRad, kOdomSdShare * turned_rad_, last_.sd_rad),
+          std::hypot(kOdomSdM, kOdomSdShare * path_m_, last_.sd_m)};
+}
+
 void RequestMaker::add_surroundings(const LocalMap& surroundings, StampNs since_ns,
                                     SpotRequest& request) const {
   const Cloud standing = surroundings.standing(since_ns, request.stamp_ns);
@@ -68,8 +73,9 @@ Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap
   r.stamp_ns = path_.back().stamp_ns;
   r.odom_segment = last_.segment;
   r.T_odom_sensor = last_.T_odom_sensor;
-  r.odom_sd_rad = std::hypot(kOdomSdRad, kOdomSdShare * turned_rad_, last_.sd_rad);
-  r.odom_sd_m = std::hypot(kOdomSdM, kOdomSdShare * path_m_, last_.sd_m);
+  const MotionSd sd = motion_sd();
+  r.odom_sd_rad = sd.rad;
+  r.odom_sd_m = sd.m;
   r.local_poses = std::exchange(path_, {});
   r.lpc = std::move(*lpc);
   r.voxel_size_m = options_.voxel_size_m;

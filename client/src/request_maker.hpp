@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "client/src/odometry.hpp"
+#include "client/src/pose_doubt.hpp"
 
 namespace liloc {
 
@@ -13,6 +14,8 @@ class RequestMaker {
 
   /// To be called once for each frame whose place is known. A new segment starts the path anew.
   void travelled(StampNs stamp_ns, const OdometryStep& step, bool informative);
+  /// Of the motion since the last request.
+  [[nodiscard]] MotionSd motion_sd() const;
   /// The request for the frame that travelled last: `cloud_sensor` is all it shows, `surroundings` what the
   /// device has seen around it (left out as the options say), `imu` may be null. A device that is `located`
   /// sends only surroundings that its odometry has placed well; one that is not, all it has. A frame that can

@@ -20,6 +20,8 @@ const char* name_of(Tracking tracking) {
       return "tracking";
     case Tracking::coasting:
       return "coasting: located by the device alone";
+    case Tracking::lost:
+      return "lost: the pose may be anywhere near";
   }
   return "unknown";
 }
@@ -36,8 +38,9 @@ void SessionReport::log_changes(Tracking tracking, const std::string& problem) c
   if (!problem.empty() && without_figures(problem) != without_figures(stats_.problem))
     log::warning("{}: {}", client_id_, problem);
   if (tracking != tracking_)
-    log::write(tracking == Tracking::coasting ? log::Level::warning : log::Level::info,
-               fmt::format("{}: {}", client_id_, name_of(tracking)));
+    log::write(
+        tracking == Tracking::coasting || tracking == Tracking::lost ? log::Level::warning : log::Level::info,
+        fmt::format("{}: {}", client_id_, name_of(tracking)));
 }
 
 void SessionReport::frame(const FrameResult& frame, Tracking tracking, std::string problem) {

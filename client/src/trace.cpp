@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/geometry/pose_estimate.hpp"
+
 namespace liloc {
 namespace {
 
@@ -9,6 +11,7 @@ constexpr char kLocalHeader[] = "stamp_ns,informative,method,converged,latency_m
 constexpr char kSpotsHeader[] =
     "stamp_ns,gpc_stamp_ns,status,verified,reason,tx,ty,tz,qx,qy,qz,qw,fitness,inlier_rmse_m,overlap,margin,"
     "latency_ms,confidence,advice";
+constexpr char kDoubtHeader[] = "stamp_ns,sd_rad,sd_m,covariance";
 constexpr char kTumHeader[] = "# timestamp_s tx ty tz qx qy qz qw : T_map_sensor";
 
 std::string numbers(const Pose& T, char separator) {
@@ -44,11 +47,12 @@ Status TraceWriter::open(const std::filesystem::path& folder) {
   if (error) return fail("{}: {}: give --trace a folder that can be made", folder.string(), error.message());
   if (auto ok = start(online_, "online.tum", kTumHeader); !ok) return ok;
   if (auto ok = start(spots_, "spots.csv", kSpotsHeader); !ok) return ok;
+  if (auto ok = start(doubt_, "doubt.csv", kDoubtHeader); !ok) return ok;
   return start(local_, "local.csv", kLocalHeader);
 }
 
 Status TraceWriter::healthy() const {
-  if (online_ && spots_ && local_) return {};
+  if (online_ && spots_ && local_ && doubt_) return {};
   return fail("{}: writing the trace failed: is the disk full?", folder_.string());
 }
 
@@ -58,9 +62,18 @@ Status TraceWriter::on_frame(const FrameResult& frame) {
          << std::endl;
   if (frame.T_map_sensor) {
     online_ << tum_row(frame.stamp_ns, *frame.T_map_sensor) << std::flush;
+    if (frame.covariance) write_doubt(frame);
     frames_.push_back({frame.stamp_ns, frame.odom_segment, frame.T_odom_sensor, *frame.T_map_sensor});
   }
   return healthy();
+}
+
+void TraceWriter::write_doubt(const FrameResult& frame) {
+  const PoseEstimate estimate{*frame.T_map_sensor, *frame.covariance};
+  doubt_ << fmt::format("{},{:.6f},{:.6f},", frame.stamp_ns, estimate.sd_rad(), estimate.sd_m());
+  for (int i = 0; i < 36; ++i)
+    doubt_ << fmt::format("{}{:.6g}", i > 0 ? " " : "", (*frame.covariance)(i / 6, i % 6));
+  doubt_ << std::endl;
 }
 
 void TraceWriter::on_request(const SpotRequest& request) {

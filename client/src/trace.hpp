@@ -1,6 +1,7 @@
 #pragma once
-// What a client leaves behind for the evaluation: online.tum, trajectory.tum, spots.csv and local.csv, with the
-// device's stamps. Rows are flushed as they happen; trajectory.tum is written at the end.
+// What a client leaves behind for the evaluation: online.tum, trajectory.tum, spots.csv, local.csv and
+// doubt.csv (the covariance of each pose of online.tum: row-major, sensor frame, [rad; m], separated by
+// spaces), with the device's stamps. Rows are flushed as they happen; trajectory.tum is written at the end.
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -41,10 +42,11 @@ class TraceWriter {
   [[nodiscard]] Status start(std::ofstream& file, const char* name, const char* header);
   [[nodiscard]] Status healthy() const;
   void write_spot(const SpotReply& reply);
+  void write_doubt(const FrameResult& frame);
   [[nodiscard]] Pose corrected(const Located& frame) const;
 
   std::filesystem::path folder_;
-  std::ofstream online_, spots_, local_;
+  std::ofstream online_, spots_, local_, doubt_;
   std::map<std::uint64_t, StampNs> pending_;  ///< seq -> stamp of requests without a row
   std::set<std::uint64_t> timed_out_;
   std::vector<Located> frames_;

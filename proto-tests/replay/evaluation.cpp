@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <sstream>
 
+#include "common/geometry/pose_estimate.hpp"
 #include "proto-tests/replay/csv.hpp"
 #include "proto-tests/replay/truth.hpp"
 
@@ -155,6 +158,41 @@ std::optional<LocalScore> score_local(const Csv& csv, const Truth& truth) {
   return score;
 }
 
+std::optional<Matrix6d> matrix_in(std::string_view text) {
+  Matrix6d matrix;
+  std::istringstream numbers{std::string(text)};
+  for (int i = 0; i < 36; ++i)
+    if (!(numbers >> matrix(i / 6, i % 6))) return std::nullopt;
+  return matrix;
+}
+
+DoubtScore score_doubt(const Csv& csv, const std::vector<StampedPose>& online, const Truth& truth) {
+  std::map<StampNs, Pose> poses;
+  for (const StampedPose& pose : online) poses[pose.stamp_ns] = pose.T_map_sensor;
+  std::vector<double> nees;
+  double beyond = 0, untold = 0;
+  for (std::size_t row = 0; row < csv.rows(); ++row) {
+    const auto stamp_ns = csv.integer(row, "stamp_ns");
+    const auto covariance = matrix_in(csv.text(row, "covariance"));
+    const auto i = stamp_ns ? truth.frame_near(*stamp_ns) : -1;
+    if (i < 0 || !covariance || !poses.contains(*stamp_ns)) continue;
+    const PoseEstimate told{poses[*stamp_ns], *covariance};
+    const Pose& T_true = truth.pose(static_cast<std::size_t>(i));
+    nees.push_back(surprise_of(told, {T_true, Matrix6d::Zero()}));
+    beyond += nees.back() > 22.5;
+    untold += !error_of(T_true, told.T_map_sensor).within(10, 0.3) && told.sd_m() <= 0.3 &&
+              told.sd_rad() <= radians(10);
+  }
+  DoubtScore score;
+  score.poses = nees.size();
+  if (nees.empty()) return score;
+  score.nees_mean = mean(nees);
+  score.nees_median = percentile(nees, 0.5);
+  score.beyond = beyond / static_cast<double>(nees.size());
+  score.wrong_untold = untold / static_cast<double>(nees.size());
+  return score;
+}
+
 }  // namespace
 
 std::optional<double> percentile(std::vector<double> values, double share) {
@@ -180,6 +218,7 @@ Result<DeviceScore> evaluate(const Recording& recording, const DeviceRecording& 
   score.has_truth = !truth->empty();
   score.online = score_track(*online, *truth, score.frames);
   score.trajectory = score_track(*trajectory, *truth, score.frames);
+  if (const auto doubt = Csv::read(folder / "doubt.csv")) score.doubt = score_doubt(*doubt, *online, *truth);
   if (!online->empty() && !device.depth.empty())
     score.first_pose_ms = to_ms(online->front().stamp_ns - device.depth.front().stamp_ns);
   if (!score.has_truth && score.frames > 0) {  // coverage needs no truth

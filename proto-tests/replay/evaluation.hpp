@@ -17,6 +17,15 @@ struct TrackScore {
   bool correct = false;                         ///< mean error within 10 deg and 0.3 m
 };
 
+/// How far the covariances told with the online poses are those of their errors.
+struct DoubtScore {
+  std::size_t poses = 0;
+  std::optional<double> nees_mean, nees_median;  ///< 6 and 5.3 where they are right
+  std::optional<double> beyond;                  ///< share with a squared distance over 22.5: 1 in 1000
+  std::optional<double>
+      wrong_untold;  ///< share off by more than 10 deg or 0.3 m whose deviation is not beyond that
+};
+
 /// Spots count for `loose` and `strict` where the device cloud overlaps the ceiling clouds by 0.3 at the truth.
 struct SpotScore {
   std::size_t n = 0, n_overlap = 0;
@@ -37,14 +46,15 @@ struct DeviceScore {
   std::size_t frames = 0;
   bool has_truth = false;  ///< without it only what needs no truth is filled in
   TrackScore online, trajectory;
+  DoubtScore doubt;
   SpotScore spots;
   std::optional<LocalScore> local;
   std::map<std::string, std::size_t> reasons;  ///< of spots.csv
   std::optional<double> first_pose_ms;         ///< recorded time from the first frame to the first global pose
 };
 
-/// Reads `folder`/{online,trajectory}.tum, spots.csv and local.csv. An absent file counts as an empty one.
-/// Errors: a file is malformed, or the ground truth cannot be read.
+/// Reads `folder`/{online,trajectory}.tum, spots.csv, local.csv and doubt.csv. An absent file counts as an
+/// empty one. Errors: a file is malformed, or the ground truth cannot be read.
 [[nodiscard]] Result<DeviceScore> evaluate(const Recording& recording, const DeviceRecording& device,
                                            const std::filesystem::path& folder);
 

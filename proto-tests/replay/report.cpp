@@ -25,6 +25,14 @@ Json json_of(const TrackScore& track) {
           {"correct", track.correct}};
 }
 
+Json json_of(const DoubtScore& doubt) {
+  return {{"poses", doubt.poses},
+          {"nees_mean", json_of(doubt.nees_mean)},
+          {"nees_median", json_of(doubt.nees_median)},
+          {"beyond_22.5", json_of(doubt.beyond)},
+          {"wrong_untold", json_of(doubt.wrong_untold)}};
+}
+
 Json json_of(const SpotScore& spots) {
   return {{"n", spots.n},
           {"n_overlap", spots.n_overlap},
@@ -60,6 +68,7 @@ Json json_of(const DeviceScore& device) {
             {"has_truth", device.has_truth},
             {"first_pose_ms", json_of(device.first_pose_ms)},
             {"online", json_of(device.online)},
+            {"doubt", json_of(device.doubt)},
             {"trajectory", json_of(device.trajectory)},
             {"spots", json_of(device.spots)},
             {"reasons", device.reasons}};
@@ -88,6 +97,11 @@ void add_device(std::string& table, const RunFacts& run, const DeviceScore& devi
   table +=
       fmt::format("{}: {} frames{}\n", device.id, device.frames, device.has_truth ? "" : ", no ground truth");
   add_row(table, "online poses", track_text(device.online, device.has_truth));
+  if (device.doubt.poses > 0)
+    add_row(table, "their covariances",
+            fmt::format("NEES {} (median {}; 6 and 5.3 are right), {} % beyond 22.5; {} % wrong and not told",
+                        cell(device.doubt.nees_mean, 1), cell(device.doubt.nees_median, 1),
+                        cell(device.doubt.beyond, 1, 100), cell(device.doubt.wrong_untold, 1, 100)));
   add_row(table, "corrected trajectory", track_text(device.trajectory, device.has_truth));
   const SpotScore& spots = device.spots;
   std::string text = fmt::format("{} asked, {} verified", spots.n, spots.verified);

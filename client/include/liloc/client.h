@@ -57,7 +57,8 @@ typedef enum liloc_local {
 typedef enum liloc_state {
   LILOC_SEARCHING = 0, /* never located */
   LILOC_TRACKING = 1,  /* located, the server answers */
-  LILOC_COASTING = 2   /* located once, and carried on by the device alone */
+  LILOC_COASTING = 2,  /* located once, and carried on by the device alone */
+  LILOC_LOST = 3       /* located once, but the pose may be off by more than lost_sd_m, lost_sd_deg allow */
 } liloc_state;
 
 typedef enum liloc_log_level {
@@ -107,6 +108,9 @@ typedef struct liloc_client_options {
   /* Lower bound between global registrations while nothing is verified, 0..60000; 0: a quarter of interval_ms.
    * An answer then brings the next request forward; not under interval_ms: it does not. */
   int32_t searching_interval_ms;
+  /* Standard deviations of the pose beyond which the state is LILOC_LOST, 0.01..100 m and 0.1..180 degrees; 0: 0.3
+   * and 10, which the method's paper counts as a wrong pose. */
+  double lost_sd_m, lost_sd_deg;
 } liloc_client_options;
 
 typedef struct liloc_pose_update {
@@ -123,6 +127,9 @@ typedef struct liloc_pose_update {
    * beside a bare wall it is near 0 along the wall, and the pose follows the prediction there. All 0 for a
    * guess, and with LILOC_LOCAL_EXTERNAL. */
   double observed[6];
+  /* Of T_map_sensor, row-major, sensor frame, [rad; m]: that of the last verified answer, carried on by what the
+   * odometry may have erred since. All 0 without has_map. */
+  double covariance[36];
 } liloc_pose_update;
 
 /* Its texts live as long as the callback. */

@@ -88,11 +88,16 @@ struct Options {
   /// Lower bound between global registrations while nothing is verified, 0..60000; 0: a quarter of interval_ms.
   /// An answer then brings the next request forward; not under interval_ms: it does not.
   int searching_interval_ms = 0;
+  /// Standard deviations of the pose beyond which the state is `lost`, 0.01..100 m and 0.1..180 degrees. By
+  /// default what the method's paper counts as a wrong pose.
+  double lost_sd_m = 0.3, lost_sd_deg = 10;
 };
 
 /// searching: never located. tracking: located, the server answers. coasting: located once, and carried on by
-/// the device alone because the server is silent or cannot answer.
-enum class State { searching, tracking, coasting };
+/// the device alone because the server is silent or cannot answer. lost: located once, but the pose's standard
+/// deviation exceeds Options::lost_sd_m or lost_sd_deg, or the inputs contradict each other; the pose is told
+/// on.
+enum class State { searching, tracking, coasting, lost };
 
 struct PoseUpdate {
   std::int64_t stamp_ns = 0;         ///< of the frame; 0 before the first
@@ -107,6 +112,9 @@ struct PoseUpdate {
   /// beside a bare wall it is near 0 along the wall, and the pose follows the prediction there. All 0 for a
   /// guess, and with Local::external.
   std::array<double, 6> observed{};
+  /// Of T_map_sensor, row-major, sensor frame, [rad; m]: that of the last verified answer, carried on by what
+  /// the odometry may have erred since. All 0 where there is no T_map_sensor.
+  std::array<double, 36> covariance{};
 };
 
 struct Reply {

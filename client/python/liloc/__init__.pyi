@@ -33,6 +33,7 @@ class State:
     SEARCHING: ClassVar[State]
     TRACKING: ClassVar[State]
     COASTING: ClassVar[State]
+    LOST: ClassVar[State]
     @property
     def name(self) -> str: ...
     @property
@@ -66,6 +67,10 @@ class PoseUpdate:
         """6: share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1.
         Near 0 along a bare wall, where the pose follows the prediction; all 0 for a guess, and with
         local="external"."""
+    @property
+    def covariance(self) -> npt.NDArray[np.float64]:
+        """6x6, of T_map_sensor, sensor frame, [rad; m]: that of the last verified answer, carried on by what the
+        odometry may have erred since. All 0 where there is no T_map_sensor."""
 
 class Reply:
     @property
@@ -182,6 +187,8 @@ class Client:
         submap: bool = True,
         request_bytes: int = 15000,
         searching_interval_ms: int = 0,
+        lost_sd_m: float = 0.3,
+        lost_sd_deg: float = 10,
         on_pose: Optional[Callable[[PoseUpdate], object]] = None,
         on_reply: Optional[Callable[[Reply], object]] = None,
     ) -> None:

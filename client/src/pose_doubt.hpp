@@ -1,0 +1,49 @@
+#pragma once
+#include <deque>
+#include <optional>
+
+#include "client/src/odometry.hpp"
+#include "common/geometry/pose_estimate.hpp"
+#include "common/protocol/spot.hpp"
+
+namespace liloc {
+
+/// One standard deviation of a motion, along the axis that is known least.
+struct MotionSd {
+  double rad = 0, m = 0;
+};
+
+/// How far the device's pose in the map may be off: as far as the last verified answer, and what odometry may
+/// have erred since. Not thread-safe.
+class PoseDoubt {
+ public:
+  /// To be called for each frame. `since_asked`: of the motion since the last request (RequestMaker). Where the
+  /// inputs are `contradicted` nobody knows how the device moves.
+  void travelled(StampNs stamp_ns, const OdometryStep& step, const MotionSd& since_asked, bool contradicted);
+  /// The newest frame became a request's.
+  void asked(StampNs stamp_ns);
+  /// A verified answer of this segment was taken over.
+  void verified(const SpotReply& reply);
+  /// The pose of the newest frame; empty before the first verified answer.
+  [[nodiscard]] std::optional<PoseEstimate> estimate() const;
+
+ private:
+  struct Asked {
+    StampNs stamp_ns;
+    Pose T_odom_sensor;
+    MotionSd sd;  ///< of the motion from the request before
+  };
+  void bridge(StampNs stamp_ns, const OdometryStep& step);
+
+  std::deque<Asked> asked_;                ///< of this segment, by rising stamp
+  std::optional<PoseEstimate> last_;       ///< where the last of them, or the segment's begin, was
+  Pose T_odom_last_ = Pose::Identity();    ///< and there
+  Pose T_odom_sensor_ = Pose::Identity();  ///< of the newest frame
+  MotionSd sd_;                            ///< since the last request
+  std::uint32_t segment_ = 0;
+  StampNs stamp_ns_ = 0, measured_ns_ = 0;  ///< of the newest frame, and of the newest that was measured
+  StampNs verified_ns_ = 0;                 ///< of the frame of the newest verified answer
+  bool contradicted_ = false;
+};
+
+}  // namespace liloc

@@ -1,0 +1,28 @@
+#pragma once
+// A pose with its covariance, and the arithmetic that server and client share.
+#include "common/geometry/pose.hpp"
+
+namespace liloc {
+
+/// A pose and how far it may be off, [rad; m] in the sensor's axes.
+struct PoseEstimate {
+  Pose T_map_sensor = Pose::Identity();
+  Matrix6d covariance = Matrix6d::Zero();
+
+  /// The largest standard deviation in any direction.
+  [[nodiscard]] double sd_rad() const;
+  [[nodiscard]] double sd_m() const;
+};
+
+/// How far `other` is from `T_map_sensor`, [rotation; translation] in the axes of the latter's sensor: the
+/// errors that a PoseEstimate's covariance is of.
+[[nodiscard]] Vector6d offset_of(const Pose& T_map_sensor, const Pose& other);
+
+/// The estimate after a motion that is known to `sd_rad` and `sd_m`.
+[[nodiscard]] PoseEstimate carried(const PoseEstimate& before, const Pose& T_before_after, double sd_rad,
+                                   double sd_m);
+
+/// Squared distance of the two over their covariances: 6 on average.
+[[nodiscard]] double surprise_of(const PoseEstimate& predicted, const PoseEstimate& seen);
+
+}  // namespace liloc

@@ -13,7 +13,8 @@ struct Row {
   bool cold = false;
   double overlap = 0;  ///< true: share of the device's points that the ceiling sees
   double error_deg = 999, error_m = 999;
-  Vector6d error = Vector6d::Zero();  ///< [rad; m] in the sensor's true axes
+  double conflict_truth = 0, map_conflict_truth = 0;  ///< what the judge holds against the truth itself
+  Vector6d error = Vector6d::Zero();                  ///< [rad; m] in the sensor's true axes
   double nees =
       -1;  ///< squared error over the reported covariance: 6 on average if that is honest; -1: no pose
   double cpu_ms = 0;  ///< of the thread that answered; with one thread a request, what an idle machine takes

@@ -127,6 +127,7 @@ class Trial {
         options_.evidence ? weighed(asked.request, d, overlap, asked) : localizer_.locate(asked.request);
     const double done_ms = thread_cpu_ms();
     d.engine.add_reply(live);
+    truth_ = judged_at_truth(asked);
     add_row(std::move(cold), true, live_ms - cold_ms, overlap, asked);
     add_row(std::move(live), false, done_ms - live_ms, overlap, asked);
   }
@@ -171,7 +172,19 @@ class Trial {
     row.cpu_ms = cpu_ms;
     row.prepare_ms = prepare_ms_;
     row.overlap = overlap;
+    row.conflict_truth = truth_.conflict;
+    row.map_conflict_truth = truth_.map_conflict;
     result_.rows.push_back(std::move(row));
+  }
+
+  [[nodiscard]] Judgement judged_at_truth(const Asked& asked) {
+    const auto snapshot = cloud_.nearest(asked.request.match_stamp_ns());
+    if (!snapshot) return {};
+    const auto spot = Spot::create(asked.request, *snapshot, server_options_);
+    if (!spot) return {};
+    const SpotProblem& problem = (*spot)->problem();
+    return judge(problem.target, problem.query, problem.query.medium, asked.T_map_sensor_true,
+                 problem.judging.fine_tolerance_m);
   }
 
   [[nodiscard]] double overlap_of(const Asked& asked, const Camera& camera) const {
@@ -198,6 +211,7 @@ class Trial {
   TrialResult result_;
   double prepare_ms_ = 0;  ///< of the newest spot
   int spots_ = 0;
+  Judgement truth_;  ///< of the newest spot
 };
 
 }  // namespace

@@ -59,11 +59,9 @@ void Background::for_each_around(std::size_t i, const Visit& visit) const {
 
 bool Background::continues_a_neighbour(std::size_t i, float units) const {
   bool continues = false;
-  const auto fill_surprise = static_cast<float>(options_.fill_surprise);
   for_each_around(i, [&](std::size_t j) {
     const Pixel& p = pixels_[j];
-    continues |= p.surface > 0 && p.averaged >= kProven &&
-                 (!p.missing || surprise_of_missing(p) < fill_surprise) &&
+    continues |= p.surface > 0 && p.averaged >= kProven && !p.missing &&
                  std::abs(p.surface - units) <= tolerance_of(units);
   });
   return continues;
@@ -145,13 +143,6 @@ Layers Background::learn(const DepthImage& image) {
 
 Layers Background::separated(const DepthImage& image) const {
   Layers layers{image, {image.stamp_ns, width_, height_, std::vector<std::uint16_t>(pixels_.size(), 0)}};
-  const auto fill_surprise = static_cast<float>(options_.fill_surprise);
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    const Pixel& p = pixels_[i];
-    if (kinds_[i] == Kind::nothing && p.surface > 0 && p.averaged >= kProven &&
-        surprise_of_missing(p) < fill_surprise)
-      layers.still.units[i] = static_cast<std::uint16_t>(std::lround(p.surface));
-  }
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     if (kinds_[i] == Kind::nothing || kinds_[i] == Kind::still) continue;
     layers.still.units[i] = 0;

@@ -58,9 +58,6 @@ TEST_P(SensorLaw, RareReturnsAddUpToTheRoom) {
   Background background(kCamera, {});
   for (int i = 0; i < 90; ++i) (void)background.learn(frame(i, 3, 4, 0.2, 0.0005, 0));
   EXPECT_LT(std::ranges::count(background.surfaces().units, 0), 40 * 30 / 20);
-  const DepthImage raw = frame(90, 3, 4, 0.2, 0.0005, 0), still = background.learn(raw).still;
-  EXPECT_LT(std::ranges::count(still.units, 0), 0.5 * static_cast<double>(std::ranges::count(raw.units, 0)))
-      << "a missing return that is no surprise says nothing against the surface";
   EXPECT_NEAR(background.noise().missing, 0.8, 0.1);
 }
 

@@ -76,9 +76,10 @@ wire::Diagnosis diagnosis_of(const std::string& id, const client::PoseUpdate& ne
   d.name = "liloc-client: " + id;
   d.level = newest.state == client::State::tracking ? Level::ok : Level::warn;
   d.message = name_of(newest.state);
+  if (newest.state == client::State::lost) d.level = Level::error;
   if (!newest.server_connected) d.message += ", no server";
   if (!s.problem.empty()) {
-    d.level = Level::warn;
+    if (d.level == Level::ok) d.level = Level::warn;
     d.message += ", " + s.problem;
   }
   if (silent) {

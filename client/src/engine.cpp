@@ -188,7 +188,8 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.residual_m = step.residual_m;
   frame.observed = step.observed;
   inputs.note(spread.fault, step.residual_m, step.strain);
-  doubt.travelled(image.stamp_ns, step, requests.motion_sd(), inputs.contradicted());
+  doubt.travelled(image.stamp_ns, step, requests.motion_sd(),
+                  {inputs.contradicted(), !external && placed->informative && step.method == "guess"});
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   if (const auto estimate = doubt.estimate(); estimate && frame.T_map_sensor)
     frame.covariance = estimate->covariance;

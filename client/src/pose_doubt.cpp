@@ -28,12 +28,16 @@ void PoseDoubt::bridge(StampNs stamp_ns, const OdometryStep& step) {
 }
 
 void PoseDoubt::travelled(StampNs stamp_ns, const OdometryStep& step, const MotionSd& since_asked,
-                          bool contradicted) {
+                          const Against& against) {
   if (step.segment != segment_) bridge(stamp_ns, step);
   segment_ = step.segment;
   T_odom_sensor_ = step.T_odom_sensor;
   sd_ = since_asked;
-  contradicted_ = contradicted;
+  contradicted_ = against.contradicted;
+  if (!against.misfit)
+    misfit_ns_ = 0;
+  else if (misfit_ns_ == 0)
+    misfit_ns_ = measured_ns_;
   stamp_ns_ = stamp_ns;
   if (step.converged || measured_ns_ == 0) measured_ns_ = stamp_ns;
 }
@@ -62,7 +66,9 @@ std::optional<PoseEstimate> PoseDoubt::estimate() const {
   if (!last_) return std::nullopt;
   const PoseEstimate now = carried(*last_, T_odom_last_.inverse() * T_odom_sensor_, sd_.rad, sd_.m);
   const double unknown_s = contradicted_ ? to_seconds(stamp_ns_ - verified_ns_) : 0;
-  return widened(now, kContradictedTurn * unknown_s, kContradictedSpeed * unknown_s);
+  const double unseen_s = misfit_ns_ != 0 ? to_seconds(stamp_ns_ - misfit_ns_) : 0;
+  return widened(now, kContradictedTurn * unknown_s + kUnseenTurn * unseen_s,
+                 kContradictedSpeed * unknown_s + kUnseenSpeed * unseen_s);
 }
 
 }  // namespace liloc

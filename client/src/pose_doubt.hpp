@@ -17,9 +17,14 @@ struct MotionSd {
 /// have erred since. Not thread-safe.
 class PoseDoubt {
  public:
-  /// To be called for each frame. `since_asked`: of the motion since the last request (RequestMaker). Where the
-  /// inputs are `contradicted` nobody knows how the device moves.
-  void travelled(StampNs stamp_ns, const OdometryStep& step, const MotionSd& since_asked, bool contradicted);
+  /// What speaks against the odometry as of a frame.
+  struct Against {
+    bool contradicted = false;  ///< its inputs contradict each other persistently
+    bool misfit = false;        ///< the frame shows a scene, but not that of the guess
+  };
+  /// To be called for each frame. `since_asked`: of the motion since the last request (RequestMaker).
+  void travelled(StampNs stamp_ns, const OdometryStep& step, const MotionSd& since_asked,
+                 const Against& against);
   /// The newest frame became a request's.
   void asked(StampNs stamp_ns);
   /// A verified answer of this segment was taken over.
@@ -43,6 +48,7 @@ class PoseDoubt {
   std::uint32_t segment_ = 0;
   StampNs stamp_ns_ = 0, measured_ns_ = 0;  ///< of the newest frame, and of the newest that was measured
   StampNs verified_ns_ = 0;                 ///< of the frame of the newest verified answer
+  StampNs misfit_ns_ = 0;                   ///< of the first frame in a row that does not fit; 0: it does
   bool contradicted_ = false;
 };
 

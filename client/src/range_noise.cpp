@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastM = 0.003, kLeastPerM2 = 0.0003;
 constexpr double kMostM = 0.005, kMostPerM2 = 0.005;
 constexpr double kSdOfMedian = 1.4826;      // of normally distributed values, by the median of their size
-constexpr float kDown = 0.5F, kUp = 0.03F;  // per frame; insensitive between half and twice of both
+constexpr float kDown = 0.5F, kUp = 0.03F;  // per frame, by hand: quick to believe that it is quiet
 constexpr int kStep = 6;                    // every sixth pixel in both axes: 2100 of 320x240
 constexpr std::size_t kFewest = 20;         // pixels of a bin that have a median
 

@@ -9,7 +9,6 @@
 namespace liloc {
 namespace {
 
-using Row3d = Eigen::RowVector3d;
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
 constexpr int kCoarse = 8;            // every eighth pixel in both axes tells a device that surely moves
@@ -19,17 +18,15 @@ constexpr int kFewestPixels = 24;     // of a tile, that make a plane
 constexpr double kTileSdM = 0.002;    // common to a tile: fixed patterns, drift with temperature; by hand,
 constexpr double kTileShare = 0.25;   // and so much of the noise, as neighbouring pixels err alike
 constexpr double kEdgePx = 1.0;       // noise of a pair at an edge, and what pairs of a tile have in common;
-constexpr double kEdgeTilePx =
-    0.25;                           // by hand, the verdicts on the recordings hardly change with half or twice
-constexpr double kFewestPairs = 4;  // of a tile, that show an edge
-constexpr int kWidestGap = 8;       // without returns: behind the rim of what stands a camera sees nothing
-constexpr int kEdgeGap = 2;         // pixels: between them may lie a mixed one
+constexpr double kEdgeTilePx = 0.25;  // by hand
+constexpr double kFewestPairs = 4;    // of a tile, that show an edge
+constexpr int kWidestGap = 8;         // without returns: behind the rim of what stands a camera sees nothing
+constexpr int kEdgeGap = 2;           // pixels: between them may lie a mixed one
 constexpr float kJumpDeviations = 6, kJumpShare = 0.03F;  // of an edge: of noise, and of the range
 constexpr double kLeverM = 2;    // at which a turn counts as a shift (ScanMatchOptions has the same)
 constexpr double kAgree = 3;     // deviations from standing still, beyond which a square shows something else
 constexpr double kFaint = 1e-3;  // information that keeps the solver from dividing by 0
 constexpr double kNormalNoise = 3;  // what noisy normals feign, times so much, is no knowledge
-constexpr double kCorrelated = 4;   // variance of a normal: neighbouring pixels err alike
 
 /// Change of a standing point's coordinates by a motion of the sensor, [rotation; translation].
 Matrix36d point_by_motion(const Eigen::Vector3d& p) {

@@ -65,8 +65,8 @@ Status choose_devices(Recording& recording, const std::vector<std::string>& ids)
 }
 
 bool is_ours(const fs::directory_entry& entry) {
-  static const std::set<std::string> traces{"online.tum", "trajectory.tum", "spots.csv", "local.csv",
-                                            "client.log"};
+  static const std::set<std::string> traces{"online.tum", "trajectory.tum", "spots.csv",
+                                            "local.csv",  "doubt.csv",      "client.log"};
   const std::string name = entry.path().filename();
   if (!entry.is_directory()) return name == "report.json" || name == "server.log" || name == "site.json";
   return std::all_of(fs::directory_iterator(entry.path()), fs::directory_iterator(), [](const auto& inner) {

@@ -20,6 +20,7 @@ TEST(Diagnosis, LevelFollowsTheState) {
   EXPECT_EQ(level(client::State::tracking), Level::ok);
   EXPECT_EQ(level(client::State::searching), Level::warn);
   EXPECT_EQ(level(client::State::coasting), Level::warn);
+  EXPECT_EQ(level(client::State::lost), Level::error);
   EXPECT_EQ(level(client::State::tracking, "the IMU is in g"), Level::warn);
   EXPECT_EQ(level(client::State::tracking, "", true), Level::stale);
 }

@@ -28,7 +28,7 @@ class Camera:
 
 class State:
     """SEARCHING: never located. TRACKING: located, the server answers. COASTING: located once, and carried on by
-    the device alone."""
+    the device alone. LOST: located once, but the pose's standard deviation exceeds lost_sd_m or lost_sd_deg."""
 
     SEARCHING: ClassVar[State]
     TRACKING: ClassVar[State]

@@ -45,6 +45,7 @@ class Walk(unittest.TestCase):
         self.assertTrue(newest.converged and newest.informative and not newest.server_connected)
         self.assertEqual((newest.observed.dtype, newest.observed.shape), (np.float64, (6,)))
         self.assertGreater(newest.observed.min(), 0.9)
+        self.assertEqual((newest.covariance.dtype, newest.covariance.shape), (np.float64, (6, 6)))
         measured = np.linalg.inv(poses[0].T_odom_sensor) @ poses[-1].T_odom_sensor
         true = np.linalg.inv(box.T_map_sensor(0)) @ box.T_map_sensor(box.FRAMES - 1)
         print(f"position off by {1e3 * np.linalg.norm(measured[:3, 3] - true[:3, 3]):.1f} mm")
@@ -158,6 +159,7 @@ class Misuse(unittest.TestCase):
                               ({"local": "inertial"}, "T_imu_sensor"), ({"interval_ms": 1}, "interval_ms"),
                               ({"request_bytes": 1}, "request_bytes"),
                               ({"searching_interval_ms": -1}, "searching_interval_ms"),
+                              ({"lost_sd_m": 0}, "lost_sd_m"),
                               ({"name": "no blanks"}, "options.id")):
             with self.assertRaisesRegex(ValueError, text):
                 client(**options)

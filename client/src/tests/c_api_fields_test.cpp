@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include "client/src/c_api_structs.hpp"
 
@@ -55,10 +56,11 @@ TEST(CApiFields, AProblemOfAnyLengthEndsWithAZero) {
 }
 
 TEST(CApiFields, PoseUpdate) {
-  const PoseUpdate update{
-      1, kPose, {{4, 5, 6}, {0, 0, 0, 1}}, 2, true, true, State::coasting, true, {.1, .2, .3, .4, .5, .6}};
-  const auto& [stamp, T_map_sensor, T_odom_sensor, segment, informative, converged, state, connected,
-               observed] = update;
+  PoseUpdate update{1,           kPose, {{4, 5, 6}, {0, 0, 0, 1}}, 2, true, true,
+                    State::lost, true,  {.1, .2, .3, .4, .5, .6},  {}};
+  std::iota(update.covariance.begin(), update.covariance.end(), 1.0);
+  const auto& [stamp, T_map_sensor, T_odom_sensor, segment, informative, converged, state, connected, observed,
+               covariance] = update;
   const liloc_pose_update u = to_c(update);
   EXPECT_EQ(u.stamp_ns, stamp);
   EXPECT_TRUE(u.has_map);
@@ -70,6 +72,8 @@ TEST(CApiFields, PoseUpdate) {
   EXPECT_EQ(u.state, static_cast<int>(state));
   EXPECT_EQ(u.server_connected, connected);
   EXPECT_TRUE(std::equal(observed.begin(), observed.end(), std::begin(u.observed), std::end(u.observed)));
+  EXPECT_TRUE(
+      std::equal(covariance.begin(), covariance.end(), std::begin(u.covariance), std::end(u.covariance)));
 }
 
 TEST(CApiFields, AProgramOfTheFirstReleaseGetsTheDefaultsOfWhatCameLater) {
@@ -78,10 +82,12 @@ TEST(CApiFields, AProgramOfTheFirstReleaseGetsTheDefaultsOfWhatCameLater) {
   o.id = "older";
   o.request_bytes = 77;  // beyond what such a program passes
   o.searching_interval_ms = 77;
+  o.lost_sd_m = 77;
   const auto options = options_from(&o, kThen);
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->request_bytes, Options{}.request_bytes);
   EXPECT_EQ(options->searching_interval_ms, Options{}.searching_interval_ms);
+  EXPECT_EQ(options->lost_sd_m, Options{}.lost_sd_m);
   EXPECT_FALSE(options_from(&o, kThen - 1));
 
   liloc_pose_update u{};
@@ -120,10 +126,13 @@ TEST(CApiFields, Options) {
   o.cpu_share = 0.5;
   o.request_bytes = 18;
   o.searching_interval_ms = 19;
+  o.lost_sd_m = 0.2;
+  o.lost_sd_deg = 21;
   const auto options = options_from(&o, sizeof o);
   ASSERT_TRUE(options) << options.error().message;
   const auto& [id, camera, domain, interface, peer_list, min_range, max_range, voxel, interval, timeout, local,
-               T_imu, still, cold, seed, queue, trace, T_base, submap, share, bytes, searching] = *options;
+               T_imu, still, cold, seed, queue, trace, T_base, submap, share, bytes, searching, lost_m,
+               lost_deg] = *options;
   EXPECT_EQ(id + interface + trace, "roboteth9trace");
   EXPECT_EQ(camera.width + camera.height, 3);
   EXPECT_EQ(camera.fx + camera.fy + camera.cx + camera.cy + camera.depth_scale_m, 25);
@@ -146,6 +155,8 @@ TEST(CApiFields, Options) {
   EXPECT_EQ(share, 0.5);
   EXPECT_EQ(bytes, 18U);
   EXPECT_EQ(searching, 19);
+  EXPECT_EQ(lost_m, 0.2);
+  EXPECT_EQ(lost_deg, 21);
 }
 
 }  // namespace

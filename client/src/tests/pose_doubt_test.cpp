@@ -10,13 +10,13 @@ constexpr StampNs kFrameNs = from_ms(100);
 /// A device that goes along x by 0.1 m a frame; every eighth frame becomes a request's.
 class Walk {
  public:
-  void frames(int count, bool contradicted = false, bool converged = true) {
+  void frames(int count, bool contradicted = false, bool converged = true, bool misfit = false) {
     for (int i = 0; i < count; ++i) {
       ++frame;
       step.converged = converged;
       step.T_odom_sensor.translation().x() = 0.1 * frame;
       ++since_asked_;
-      doubt.travelled(stamp(frame), step, {0.001 * since_asked_, 0.002 * since_asked_}, contradicted);
+      doubt.travelled(stamp(frame), step, {0.001 * since_asked_, 0.002 * since_asked_}, {contradicted, misfit});
       if (frame % 8 != 0) continue;
       doubt.asked(stamp(frame));
       since_asked_ = 0;
@@ -89,6 +89,16 @@ TEST(PoseDoubt, ABreakOfTheOdometryCostsWhatTheDeviceMayHaveGone) {
   ++walk.step.segment;
   walk.frames(1);
   EXPECT_GT(walk.doubt.estimate()->sd_m(), 2.9);  // of 3.1 s
+}
+
+TEST(PoseDoubt, AViewThatFitsNothingSpeaksAgainstTheGuessUntilItFits) {
+  Walk walk;
+  walk.frames(8);
+  walk.answer(8);
+  walk.frames(4, false, false, true);
+  EXPECT_GT(walk.doubt.estimate()->sd_m(), 0.3);
+  walk.frames(1);
+  EXPECT_LT(walk.doubt.estimate()->sd_m(), 0.1);
 }
 
 TEST(PoseDoubt, InputsThatContradictEachOtherLoseTheDeviceUntilTheNextAnswer) {

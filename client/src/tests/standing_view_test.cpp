@@ -135,7 +135,9 @@ TEST_P(SlowMotion, IsFollowed) {
       EXPECT_LT(error.translation().norm(), 0.01) << "seed " << seed << ", frame " << i;
       EXPECT_LT(degrees(rotation_angle_rad(error)), 0.3) << "seed " << seed << ", frame " << i;
     }
-    if (m.speed_m_s == 0 && m.turn_deg_s == 0) EXPECT_GT(standing, 100) << "seed " << seed;
+    if (m.speed_m_s == 0 && m.turn_deg_s == 0) {
+      EXPECT_GT(standing, 100) << "seed " << seed;
+    }
   }
 }
 INSTANTIATE_TEST_SUITE_P(

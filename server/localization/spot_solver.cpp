@@ -19,7 +19,7 @@ bool convincing(const std::vector<Hypothesis>& found) {
          margin_of(found) > 0.15;
 }
 
-/// Samples of two normals, which find places of little overlap and of no gravity that three points miss.
+/// Samples of two normals find places without gravity that three points miss, and the other way round.
 FeatureSearchOptions sampled_by_normals(double voxel_size_m) {
   FeatureSearchOptions features;
   features.sample = Sample::two_normals;
@@ -129,10 +129,14 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
     if (up.borne_out && !found.empty()) return found;  // every place was looked at; features never won there
   }
   if (convincing(found)) return found;
-  std::vector<Hypothesis> by_features =
-      judge_candidates(problem, FeatureProposer(sampled_by_normals(options.voxel_size_m)).propose(problem));
-  std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
-  return merged(std::move(found), by_features);
+  for (const FeatureSearchOptions& features :
+       {FeatureSearchOptions{}, sampled_by_normals(options.voxel_size_m)}) {
+    std::vector<Hypothesis> by_features = judge_candidates(problem, FeatureProposer(features).propose(problem));
+    std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
+    found = merged(std::move(found), by_features);
+    if (problem.up_sensor || convincing(found)) break;
+  }
+  return found;
 }
 
 }  // namespace liloc

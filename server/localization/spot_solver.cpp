@@ -19,14 +19,18 @@ bool convincing(const std::vector<Hypothesis>& found) {
          margin_of(found) > 0.15;
 }
 
-/// Samples of two normals find places without gravity that three points miss, and the other way round.
-FeatureSearchOptions sampled_by_normals(double voxel_size_m) {
-  FeatureSearchOptions features;
-  features.sample = Sample::two_normals;
-  features.spacing_m = 2 * voxel_size_m;
-  features.keep_per_cell = 200;  // as many again are of one place
-  features.propose = 60;         // as many as are judged
-  return features;
+/// How features are searched. Without gravity by samples of two normals first, which find most in least time,
+/// and then by many of three points, which find others (DECISIONS.md). What is kept of a cell is mostly of one
+/// place, and as many are proposed as are judged.
+std::vector<FeatureSearchOptions> feature_searches(const SpotProblem& problem, double voxel_size_m) {
+  if (problem.up_sensor) return {FeatureSearchOptions{}};
+  FeatureSearchOptions two, three;
+  two.sample = Sample::two_normals;
+  two.spacing_m = 2 * voxel_size_m;
+  two.keep_per_cell = 200;
+  three.iterations = 300000;
+  three.keep_per_cell = two.propose = three.propose = 60;
+  return {two, three};
 }
 
 /// Merges two lists of hypotheses, best first, one per place.
@@ -129,12 +133,11 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
     if (up.borne_out && !found.empty()) return found;  // every place was looked at; features never won there
   }
   if (convincing(found)) return found;
-  for (const FeatureSearchOptions& features :
-       {FeatureSearchOptions{}, sampled_by_normals(options.voxel_size_m)}) {
+  for (const FeatureSearchOptions& features : feature_searches(problem, options.voxel_size_m)) {
     std::vector<Hypothesis> by_features = judge_candidates(problem, FeatureProposer(features).propose(problem));
     std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
     found = merged(std::move(found), by_features);
-    if (problem.up_sensor || convincing(found)) break;
+    if (convincing(found)) break;
   }
   return found;
 }

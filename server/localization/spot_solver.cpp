@@ -137,7 +137,6 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
     std::vector<Hypothesis> by_features = judge_candidates(problem, FeatureProposer(features).propose(problem));
     std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
     found = merged(std::move(found), by_features);
-    if (convincing(found)) break;
   }
   return found;
 }

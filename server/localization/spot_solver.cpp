@@ -19,18 +19,17 @@ bool convincing(const std::vector<Hypothesis>& found) {
          margin_of(found) > 0.15;
 }
 
-/// How features are searched. Without gravity by samples of two normals first, which find most in least time,
-/// and then by many of three points, which find others (DECISIONS.md). What is kept of a cell is mostly of one
-/// place, and as many are proposed as are judged.
-std::vector<FeatureSearchOptions> feature_searches(const SpotProblem& problem, double voxel_size_m) {
-  if (problem.up_sensor) return {FeatureSearchOptions{}};
-  FeatureSearchOptions two, three;
-  two.sample = Sample::two_normals;
-  two.spacing_m = 2 * voxel_size_m;
-  two.keep_per_cell = 200;
-  three.iterations = 300000;
-  three.keep_per_cell = two.propose = three.propose = 60;
-  return {two, three};
+/// How features are searched: without gravity by samples of two normals, which find most in least time
+/// (common/registration/DECISIONS.md). What is kept of a cell is mostly of one place, and as many are proposed
+/// as are judged.
+FeatureSearchOptions feature_search_of(const SpotProblem& problem, double voxel_size_m) {
+  FeatureSearchOptions features;
+  if (problem.up_sensor) return features;
+  features.sample = Sample::two_normals;
+  features.spacing_m = 2 * voxel_size_m;
+  features.keep_per_cell = 200;
+  features.propose = 60;
+  return features;
 }
 
 /// Merges two lists of hypotheses, best first, one per place.
@@ -133,12 +132,10 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
     if (up.borne_out && !found.empty()) return found;  // every place was looked at; features never won there
   }
   if (convincing(found)) return found;
-  for (const FeatureSearchOptions& features : feature_searches(problem, options.voxel_size_m)) {
-    std::vector<Hypothesis> by_features = judge_candidates(problem, FeatureProposer(features).propose(problem));
-    std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
-    found = merged(std::move(found), by_features);
-  }
-  return found;
+  const FeatureProposer features(feature_search_of(problem, options.voxel_size_m));
+  std::vector<Hypothesis> by_features = judge_candidates(problem, features.propose(problem));
+  std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
+  return merged(std::move(found), by_features);
 }
 
 }  // namespace liloc

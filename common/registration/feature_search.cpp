@@ -54,6 +54,15 @@ Described describe(const Cloud& thinned, const DescribeOptions& options) {
   return result;
 }
 
+std::vector<FeatureMatch> match_features(const Described& query_described, const Described& target_described) {
+  if (query_described.features.size() == 0 || target_described.features.size() == 0) return {};
+  std::vector<std::uint32_t> all(target_described.features.size());
+  std::iota(all.begin(), all.end(), 0U);
+  std::vector<Nearest> nearest(1, Nearest(query_described.features.size()));
+  FeatureBlock(target_described.features, all).improve(query_described.features, nearest.data());
+  return matches_in(query_described, target_described, {0}, nearest);
+}
+
 Partition partition(const Described& described, double cell_m, std::size_t min_points) {
   Partition result;
   const auto& index = described.features.index;

@@ -43,6 +43,10 @@ struct FeatureSearchOptions {
                                                     const Query& query, const Described& query_described,
                                                     const FeatureSearchOptions& options = {});
 
+/// Each described point of the query with the one of the target that is most like it.
+[[nodiscard]] std::vector<FeatureMatch> match_features(const Described& query_described,
+                                                       const Described& target_described);
+
 /// Square tiles over x and y, and overlapping cells of up to four of them.
 struct Partition {
   std::vector<std::vector<std::uint32_t>> tiles;  ///< feature columns; each column is in one tile

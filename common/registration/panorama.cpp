@@ -10,6 +10,8 @@ constexpr int kColumns = 180, kRows = 90;  // two degrees
 constexpr float kTooNear_m = 0.3F;         // directions mean little so near to where the sensor moved about
 constexpr int kFewestNeighbours = 5;       // of nine directions: between fewer points one may look through
 constexpr float kHidden_m = 0.5F;
+constexpr float kAgrees =
+    5.0F / 3.0F;  // tolerances behind the nearest about: of slanted surfaces that is the edge
 constexpr double kMostHidden =
     0.4;  // fragments of a hand-held camera: 0.16 to 0.31; rooms seen from elsewhere: over 0.5
 
@@ -71,7 +73,9 @@ Panorama::Count Panorama::count(const std::vector<Eigen::Vector3f>& points, cons
     const int at = direction_of(p);
     if (at < 0 || nearest_m_[static_cast<std::size_t>(at)] == 0) continue;
     ++count.known;
-    count.conflict += p.norm() < nearest_m_[static_cast<std::size_t>(at)] - tolerance;
+    const float behind = p.norm() - nearest_m_[static_cast<std::size_t>(at)];
+    count.conflict += behind < -tolerance;
+    count.agree += behind >= -tolerance && behind < kAgrees * tolerance;
   }
   return count;
 }

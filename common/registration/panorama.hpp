@@ -16,10 +16,10 @@ class Panorama {
 
   /// Whether the cloud can have been seen from its origin: few of its points hide behind others.
   [[nodiscard]] bool seen_from_origin() const { return seen_from_origin_; }
-  /// Of some points, how many lie over `tolerance_m` before what was measured in their direction, and how many
-  /// lie in a measured direction at all.
+  /// Of some points, how many lie in a measured direction at all, how many of them over `tolerance_m` before
+  /// what was measured there, and how many about there: behind by no more than that and two thirds of it.
   struct Count {
-    int conflict = 0, known = 0;
+    int conflict = 0, agree = 0, known = 0;
   };
   [[nodiscard]] Count count(const std::vector<Eigen::Vector3f>& points, const Pose& T_origin_points,
                             double tolerance_m) const;

@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "proto-tests/bench/spot_bench_pair_rows.hpp"
 #include "proto-tests/bench/spot_bench_pairs.hpp"
 #include "proto-tests/bench/spot_bench_spots.hpp"
 
@@ -23,7 +24,7 @@ constexpr int kSites = 20;  // when nothing else is asked for
 struct Options {
   std::optional<int> sites;
   std::vector<int> threads{1};
-  std::string pairs, csv, evidence;
+  std::string pairs, pair_rows, csv, evidence;
   SpotsOptions spots;
 
   [[nodiscard]] Status validated() const {
@@ -50,7 +51,10 @@ Result<TrialResult> run_with(const Options& options, int threads) {
   if (!spots.recordings.empty()) done = run(spots);
   spots.recordings.clear();
   if (done && spots.sites > 0) done = run(spots);
-  if (done && !options.pairs.empty()) done = run_pairs({options.pairs, threads, spots.trial.peer_every});
+  if (done && !options.pairs.empty() && !options.pair_rows.empty())
+    done = write_pair_rows(options.pairs, options.pair_rows);
+  else if (done && !options.pairs.empty())
+    done = run_pairs({options.pairs, threads, spots.trial.peer_every});
   if (!done) return tl::unexpected(done.error());
   return all;
 }
@@ -103,6 +107,8 @@ void declare(CLI::App& app, Options& options) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   app.add_option("--pairs", options.pairs, "Folder of pairs with their gt.log");
+  app.add_option("--pair-rows", options.pair_rows,
+                 "Of the pairs, append a row for each pose in question to this file, for fit_align.py");
   app.add_option("--peer-every", spots.trial.peer_every,
                  "Ask PCL and Open3D for one in so many spots or pairs; 0: never")
       ->check(CLI::Range(0, 1000))

@@ -20,8 +20,8 @@ void print_text(const AlignResult& result, double latency_ms) {
   const Eigen::Matrix4d T = result.T_target_source.matrix();
   for (int row = 0; row < 4; ++row)
     fmt::print("{: .9f} {: .9f} {: .9f} {: .9f}\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
-  fmt::print("fitness: {:.4f}\nrmse: {:.4f} m\ntrusted: {}\nlatency: {:.1f} ms\n", result.fitness,
-             result.rmse_m, result.trusted ? "yes" : "no", latency_ms);
+  fmt::print("fitness: {:.4f}\nrmse: {:.4f} m\nconfidence: {:.4f}\ntrusted: {}\nlatency: {:.1f} ms\n",
+             result.fitness, result.rmse_m, result.confidence, result.trusted ? "yes" : "no", latency_ms);
 }
 
 void print_json(const AlignResult& result, double latency_ms) {
@@ -30,11 +30,9 @@ void print_json(const AlignResult& result, double latency_ms) {
     const Eigen::RowVector4d values = result.T_target_source.matrix().row(row);
     rows.push_back({values[0], values[1], values[2], values[3]});
   }
-  const nlohmann::ordered_json json{{"T_target_source", rows},
-                                    {"fitness", result.fitness},
-                                    {"rmse_m", result.rmse_m},
-                                    {"trusted", result.trusted},
-                                    {"latency_ms", latency_ms}};
+  const nlohmann::ordered_json json{{"T_target_source", rows},   {"fitness", result.fitness},
+                                    {"rmse_m", result.rmse_m},   {"confidence", result.confidence},
+                                    {"trusted", result.trusted}, {"latency_ms", latency_ms}};
   fmt::print("{}\n", json.dump());
 }
 
@@ -68,6 +66,11 @@ void add_align(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--threads", arguments->options.threads, "Threads to use")
       ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command
+      ->add_option("--risk", arguments->options.risk,
+                   "Trust a result whose probability of being off by over 0.2 m is at most this")
+      ->check(CLI::Range(1e-6, 0.999))
       ->capture_default_str();
   command->add_flag("--gravity", arguments->options.gravity,
                     "Both clouds have z up: search x, y, z and yaw alone");

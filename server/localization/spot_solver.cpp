@@ -19,13 +19,16 @@ bool convincing(const std::vector<Hypothesis>& found) {
          margin_of(found) > 0.15;
 }
 
-/// Samples of two normals, which find places of little overlap and of no gravity that three points miss.
-FeatureSearchOptions sampled_by_normals(double voxel_size_m) {
+/// How features are searched: without gravity by samples of two normals, which find most in least time
+/// (common/registration/DECISIONS.md). What is kept of a cell is mostly of one place, and as many are proposed
+/// as are judged.
+FeatureSearchOptions feature_search_of(const SpotProblem& problem, double voxel_size_m) {
   FeatureSearchOptions features;
+  if (problem.up_sensor) return features;
   features.sample = Sample::two_normals;
   features.spacing_m = 2 * voxel_size_m;
-  features.keep_per_cell = 200;  // as many again are of one place
-  features.propose = 60;         // as many as are judged
+  features.keep_per_cell = 200;
+  features.propose = 60;
   return features;
 }
 
@@ -129,8 +132,8 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
     if (up.borne_out && !found.empty()) return found;  // every place was looked at; features never won there
   }
   if (convincing(found)) return found;
-  std::vector<Hypothesis> by_features =
-      judge_candidates(problem, FeatureProposer(sampled_by_normals(options.voxel_size_m)).propose(problem));
+  const FeatureProposer features(feature_search_of(problem, options.voxel_size_m));
+  std::vector<Hypothesis> by_features = judge_candidates(problem, features.propose(problem));
   std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
   return merged(std::move(found), by_features);
 }

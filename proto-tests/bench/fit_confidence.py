@@ -173,7 +173,7 @@ def main():
             world = name[:-1] + spot["site"][0].split()[0] if name.endswith("*") else name
             worlds.setdefault(world, []).append(spot)
             weights[world] = float(weight or 1)
-    rows, limit = Rows(worlds, weights), np.log((1 - 3 * args.risk) / (3 * args.risk))
+    rows, limit = Rows(worlds, weights), np.log((1 - 5 * args.risk) / (5 * args.risk))
     print("| world held out | devices | answers | right | log loss | right ones refused: history | cold | wrong verified | located within 3 s |\n|---|---|---|---|---|---|---|---|---|")
     held_odds, held_right = [], []
     for name in worlds:

@@ -20,7 +20,7 @@ Result<ReplayOptions> ReplayOptions::validated() const {
        {in_range("interval-ms", interval_ms, 50, 60000), in_range("voxel", voxel_m, 0.01, 0.5),
         in_range("searching-interval-ms", searching_interval_ms, 0, 60000),
         in_range("sampling", sampling, 0.01, 1), in_range("threads", threads, 1, 64),
-        in_range("risk", risk, 1e-6, 0.3)})
+        in_range("risk", risk, 1e-6, 0.1)})
     if (!status) return tl::unexpected(status.error());
   if (const auto known = method_from(method); !known) return tl::unexpected(known.error());
   LocalizerOptions localizer;

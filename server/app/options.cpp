@@ -55,7 +55,7 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       ->add_option(
           "--risk", options.localizer.risk,
           "Of all verified answers, the share that may be wrong (over 10 deg or 0.3 m)")
-      ->check(CLI::Range(1e-6, 0.3))
+      ->check(CLI::Range(1e-6, 0.1))
       ->capture_default_str();
   method->add_option("--icp", raw.icp,
                      "Last refinement: plane, or point as in the paper; else the method's own");

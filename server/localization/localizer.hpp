@@ -35,7 +35,7 @@ struct LocalizerOptions {
   std::uint64_t seed = 1;  ///< all randomness comes from it, the client id and the request's seq
   int threads = 1;         ///< per request
   std::string server_id = "liloc";
-  double risk = 1e-3;  ///< of all verified answers, the share that may be wrong, 1e-6..0.3
+  double risk = 1e-3;  ///< of all verified answers, the share that may be wrong, 1e-6..0.1
   /// A search of the room may take so long, then the request is refused: what was not searched may look like
   /// what was. Without a limit answers do not depend on load.
   std::chrono::steady_clock::duration search_limit = GravitySearchOptions{}.time_limit;

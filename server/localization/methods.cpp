@@ -49,7 +49,7 @@ Icp LocalizerOptions::icp_or_default() const {
 }
 
 Status LocalizerOptions::validated() const {
-  if (!(risk >= 1e-6 && risk <= 0.3)) return fail("risk is {}; give 0.000001 to 0.3", risk);
+  if (!(risk >= 1e-6 && risk <= 0.1)) return fail("risk is {}; give 0.000001 to 0.1", risk);
   if (method != Method::liloc && verify_or_default() == Verify::tracks)
     return fail("verify tracks needs the free-space search of method liloc; choose verify paper or none");
   return {};

@@ -75,7 +75,7 @@ TEST_F(Trace, HeadersAreTheContract) {
   EXPECT_EQ(
       lines("spots.csv").front(),
       "stamp_ns,gpc_stamp_ns,status,verified,reason,tx,ty,tz,qx,qy,qz,qw,fitness,inlier_rmse_m,overlap,margin,"
-      "latency_ms");
+      "latency_ms,confidence,advice");
 }
 
 TEST_F(Trace, RowsAreThereBeforeTheEnd) {
@@ -102,11 +102,11 @@ TEST_F(Trace, EveryRequestHasOneRow) {
   ASSERT_EQ(rows.size(), 5U);
   EXPECT_EQ(rows[1],
             "1000000005,77,verified,1,confirmed,4.000000,0.000000,0.000000,0.000000,0.000000,0.000000,1.000000,"
-            "0.5000,0.00000,0.0000,0.0000,12.250");
-  EXPECT_EQ(rows[2], "3000000005,0,refused,0,no_answer,,,,,,,,,,,,");
+            "0.5000,0.00000,0.0000,0.0000,12.250,0.00000,none");
+  EXPECT_EQ(rows[2], "3000000005,0,refused,0,no_answer,,,,,,,,,,,,,,");
   EXPECT_THAT(rows[3], StartsWith("4000000005,0,refused,0,no_gpc,,,,,,,,"));
-  EXPECT_EQ(rows[4], "2000000005,0,refused,0,no_answer,,,,,,,,,,,,");
-  for (const auto& row : rows) EXPECT_EQ(std::count(row.begin(), row.end(), ','), 16);
+  EXPECT_EQ(rows[4], "2000000005,0,refused,0,no_answer,,,,,,,,,,,,,,");
+  for (const auto& row : rows) EXPECT_EQ(std::count(row.begin(), row.end(), ','), 18);
 }
 
 TEST_F(Trace, TheTrajectoryMixesTheCorrectionsAroundAFrame) {

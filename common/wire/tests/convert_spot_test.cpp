@@ -82,6 +82,8 @@ TEST(ConvertReply, HostileFieldsAreNamed) {
       {"inlier_rmse_m", [](auto& m) { m.inlier_rmse_m = -1; }},
       {"margin", [](auto& m) { m.margin = kNan; }},
       {"latency_ms", [](auto& m) { m.latency_ms = -5; }},
+      {"confidence", [](auto& m) { m.confidence = 1.01; }},
+      {"confidence", [](auto& m) { m.confidence = kNan; }},
       {"request_sent_ns", [](auto& m) { m.request_sent_ns = -1; }},
       {"server_received_ns", [](auto& m) { m.server_received_ns = -1; }},
       {"server_sent_ns", [](auto& m) { m.server_sent_ns = -1; }},
@@ -98,6 +100,17 @@ TEST(ConvertReply, HostileFieldsAreNamed) {
     spoil(message);
     expect_refused(message, field);
   }
+}
+
+TEST(ConvertReply, ConfidenceAndAdviceAreCarried) {
+  SpotReply reply = sample_reply();
+  reply.confidence = 0.987;
+  reply.advice = Advice::twin;
+  auto message = to_wire(reply, 1);
+  EXPECT_EQ(from_wire(message)->confidence, 0.987);
+  EXPECT_EQ(from_wire(message)->advice, Advice::twin);
+  message.advice = 200;
+  EXPECT_EQ(name_of(from_wire(message)->advice), "unknown") << "a newer server may know more";
 }
 
 TEST(ConvertReply, AReasonOfANewerServerIsKept) {

@@ -175,12 +175,22 @@ void Odometry::tell_doubt(OdometryStep& step) {
 
 void Odometry::start_segment(StampNs stamp_ns) {
   log::warning("odometry lost for {:.1f} s: a new segment starts", to_seconds(stamp_ns - anchored_ns_));
+  begin_anew();
+}
+
+void Odometry::begin_anew() {
   map_.clear();
   standing_.forget();
   ++segment_;
   motion_.restart();
   covariance_.setZero();
   marked_.setZero();
+}
+
+void Odometry::clock_set(StampNs by_ns) {
+  for (StampNs* stamp : {&last_ns_, &unmatched_ns_, &stood_ns_, &anchored_ns_, &keyframe_ns_, &recovered_ns_})
+    if (*stamp != 0) *stamp += by_ns;
+  begin_anew();
 }
 
 void Odometry::remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor) {

@@ -120,7 +120,7 @@ void Engine::Impl::set_clock_back(StampNs by_ns) {
   schedule.clock_set(by_ns);
   link.clock_set(by_ns);
   doubt.clock_set(by_ns);
-  odometry.clock_set(by_ns);
+  odometry.clock_set();
   if (external) external->frames_clock_set();
   set_back_ns = last_ns + by_ns;
   set_back_by_ns = -by_ns;

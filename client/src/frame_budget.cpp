@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kRecent = 31, kFewest = 5;
 constexpr StampNs kLate = from_ms(500);  // of what is older by more the clock was set
-constexpr double kSlack = 0.9;  // frames do not come at even distances
+constexpr double kSlack = 0.9;           // frames do not come at even distances
 
 }  // namespace
 

@@ -187,9 +187,10 @@ void Odometry::begin_anew() {
   marked_.setZero();
 }
 
-void Odometry::clock_set(StampNs by_ns) {
+void Odometry::clock_set() {
+  if (last_ns_ == 0) return;
   for (StampNs* stamp : {&last_ns_, &unmatched_ns_, &stood_ns_, &anchored_ns_, &keyframe_ns_, &recovered_ns_})
-    if (*stamp != 0) *stamp += by_ns;
+    *stamp = 0;
   begin_anew();
 }
 
@@ -225,7 +226,9 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
   OdometryStep step;
   if (last_ns_ == 0) {
     step.method = "first";
+    step.T_odom_sensor = T_odom_last_;
     step.converged = usable;
+    step.jumped = segment_ > 0;  // nobody saw the way from the last segment
     anchored_ns_ = image.stamp_ns;
   } else {
     const FrameStep from{last_ns_, image.stamp_ns, anchored_ns_, T_odom_last_};

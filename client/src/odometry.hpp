@@ -56,8 +56,8 @@ class Odometry {
   /// `usable`: the frame may be matched (not blocked). `imu` may be null.
   [[nodiscard]] OdometryStep step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,
                                   ImuTrack* imu);
-  /// The clock of the stamps was set by so much: a new segment starts where the last frame was.
-  void clock_set(StampNs by_ns);
+  /// The clock of the stamps was set: a new segment starts where the last frame was.
+  void clock_set();
   [[nodiscard]] const LocalMap& map() const { return map_; }
   /// The uncertainty of the motion is counted from the last step on.
   void mark() {

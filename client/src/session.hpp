@@ -32,8 +32,8 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Queues; the oldest frame makes room when the queue is full. Errors: stopped, a stamp that is not positive or
-  /// looks like another unit.
+  /// Queues; the oldest frame makes room when the queue is full. Errors: stopped, a stamp that is not positive
+  /// or looks like another unit.
   [[nodiscard]] Status push_depth(DepthImage image);
   /// A cloud in place of an image; the same queue. Errors: as above.
   [[nodiscard]] Status push_points(StampNs stamp_ns, Cloud cloud_sensor);

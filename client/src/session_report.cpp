@@ -10,9 +10,9 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kLatencies = 512;
-constexpr int kRefused = 3;  // frames in a row: that is no hiccup
+constexpr int kRefused = 3;                       // frames in a row: that is no hiccup
 constexpr auto kBlind = std::chrono::seconds(2);  // who is carried may be metres off by then
-constexpr StampNs kLongestStep = from_ms(1000);  // between frames that carry the pose on
+constexpr StampNs kLongestStep = from_ms(1000);   // between frames that carry the pose on
 
 const char* name_of(Tracking tracking) {
   switch (tracking) {

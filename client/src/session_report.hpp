@@ -68,7 +68,7 @@ class SessionReport {
   int refused_ = 0;  ///< frames in a row
   bool ended_ = false;
   std::vector<std::pair<Counter, LineLimit>> limits_;  ///< by what was refused
-  std::deque<double> latencies_ms_;  ///< of the recent frames
+  std::deque<double> latencies_ms_;                    ///< of the recent frames
 };
 
 }  // namespace liloc

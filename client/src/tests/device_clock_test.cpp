@@ -120,7 +120,7 @@ TEST_P(DeviceClock, SetBackIsFollowedWithinAFewFrames) {
     EXPECT_LE(device.frames_refused, 2) << by_s;
     EXPECT_LE(device.samples_refused, 2);
     EXPECT_GT(device.frame_.odom_segment, segment);
-    EXPECT_LT(device.longest_unlocated_s, 1.0);
+    EXPECT_LT(device.longest_unlocated_s, 0.5);
     EXPECT_LT(device.worst_m, 0.05);
     EXPECT_THAT(device.problems, HasSubstr("clock was set back"));
     EXPECT_EQ(device.engine.tracking(), Tracking::tracking);

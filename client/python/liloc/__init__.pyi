@@ -208,7 +208,8 @@ class Client:
         self, stamp_ns: int, T_odom_base: npt.ArrayLike, covariance: Optional[npt.ArrayLike] = None
     ) -> None:
         """With local="external": where the odometry has the base, 4x4, in its own frame; often, and in order. A gap
-        over a second or a jump starts a new odom_segment. covariance: 6x6 of the pose, [rad; m]."""
+        over a second or a jump starts a new odom_segment. covariance: 6x6 of the pose, [rad; m];
+        NaN or a negative variance: unknown."""
     def newest(self) -> PoseUpdate:
         """Of the newest processed frame."""
     def wait(self, newer_than_ns: int = 0, timeout_s: float = 1.0) -> Optional[PoseUpdate]:

@@ -120,8 +120,10 @@ void PythonClient::push_imu(const py::object& stamps_ns, const py::object& sampl
   Outcome<Taken> pushed = Taken{};
   {
     const py::gil_scoped_release unlocked;
-    for (std::size_t i = 0; i < imu.size() && pushed; ++i)
-      pushed = client_->push_imu(imu[i].stamp_ns, imu[i].angular_velocity_rad_s, imu[i].specific_force_m_s2);
+    for (const Imu& one : imu) {  // one that is refused does not take the others along
+      auto taken = client_->push_imu(one.stamp_ns, one.angular_velocity_rad_s, one.specific_force_m_s2);
+      if (pushed && !taken) pushed = std::move(taken);
+    }
   }
   check(pushed);
 }

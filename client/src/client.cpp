@@ -141,8 +141,6 @@ Outcome<Taken> Client::push_odometry(std::int64_t stamp_ns, const Pose& T_odom_b
   OdometrySample sample{stamp_ns, *pose, std::nullopt};
   if (covariance)
     sample.covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance->data());
-  if (sample.covariance && !sample.covariance->allFinite())
-    return Outcome<Taken>::failed(fmt::format("{}: covariance is not finite; leave it out", impl_->id));
   return to_public(impl_->session->push_odometry(sample));
 }
 

@@ -11,12 +11,16 @@
 #include "client/src/request_maker.hpp"
 #include "client/src/request_schedule.hpp"
 #include "common/base/log.hpp"
+#include "common/base/stamp_watch.hpp"
 #include "common/geometry/depth.hpp"
 
 namespace liloc {
 namespace {
 
 constexpr int kSilentIntervals = 3;
+constexpr StampNs kToldFor = from_ms(3000);     // that the clock was set
+constexpr StampNs kClosestFrames = from_ms(1);  // no depth sensor is as quick as that
+constexpr std::size_t kJudgedFrames = 3;
 constexpr std::size_t kFewestSurfels = 60;  // a frame with fewer cannot be matched
 
 OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
@@ -65,7 +69,10 @@ struct Engine::Impl {
       log::warning("local registration without an IMU: the cloud method is used instead");
   }
 
-  [[nodiscard]] Status check(const DepthImage& image) const;
+  /// By how much the clock was set (StampWatch).
+  [[nodiscard]] Result<StampNs> check(const DepthImage& image);
+  void set_clock_back(StampNs by_ns);
+  [[nodiscard]] std::string clock_problem() const;
   /// `points`: within the view, where the frame came as a cloud.
   [[nodiscard]] Result<FrameResult> add(const DepthImage& image, const Cloud* points);
   [[nodiscard]] Result<Placed> place(const DepthImage& image, const Cloud* points, const FrameSpread& spread);
@@ -86,14 +93,16 @@ struct Engine::Impl {
   RequestMaker requests;
   PoseDoubt doubt;
   MapLink link;
+  StampWatch stamps{{"depth", kClosestFrames, kJudgedFrames}};
   StampNs last_ns = 0;
+  StampNs set_back_ns = 0, set_back_by_ns = 0;  ///< where the clock went on, and what it was set back by
   bool started = false;
   std::uint32_t segment = 0;
   std::optional<SpotRequest> request;
   std::vector<std::uint64_t> unanswered;
 };
 
-Status Engine::Impl::check(const DepthImage& image) const {
+Result<StampNs> Engine::Impl::check(const DepthImage& image) {
   const Camera& c = options.camera;
   if (image.width != c.width || image.height != c.height)
     return fail("depth image is {}x{}, the camera {}x{}: pass images of the camera's size", image.width,
@@ -101,9 +110,26 @@ Status Engine::Impl::check(const DepthImage& image) const {
   if (image.units.size() != static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height))
     return fail("depth image has {} values, {}x{} needs {}", image.units.size(), c.width, c.height,
                 c.width * c.height);
-  if (started && image.stamp_ns <= last_ns)
-    return fail("depth stamp {} is not newer than the last one ({}): frame ignored", image.stamp_ns, last_ns);
-  return {};
+  return stamps.add(image.stamp_ns);
+}
+
+/// What was asked and answered counts on by the new clock; the motion in between was seen by nobody.
+void Engine::Impl::set_clock_back(StampNs by_ns) {
+  log::warning("{}: the device's clock was set back by {:.1f} s: its odometry begins anew", options.client_id,
+               -to_seconds(by_ns));
+  schedule.clock_set(by_ns);
+  link.clock_set(by_ns);
+  doubt.clock_set(by_ns);
+  odometry.clock_set();
+  if (external) external->frames_clock_set();
+  set_back_ns = last_ns + by_ns;
+  set_back_by_ns = -by_ns;
+}
+
+std::string Engine::Impl::clock_problem() const {
+  if (set_back_by_ns == 0 || last_ns - set_back_ns > kToldFor) return "";
+  return fmt::format("the device's clock was set back by {:.1f} s: the device is located anew",
+                     to_seconds(set_back_by_ns));
 }
 
 Result<Cloud> Engine::Impl::cloud_of(const DepthImage& image, const Camera& camera, const Cloud* points) const {
@@ -165,7 +191,9 @@ void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, cons
 }
 
 Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* points) {
-  if (const Status ok = check(image); !ok) return tl::unexpected(ok.error());
+  const auto set_by_ns = check(image);
+  if (!set_by_ns) return tl::unexpected(set_by_ns.error());
+  if (*set_by_ns < 0) set_clock_back(*set_by_ns);
   const Stopwatch watch;
   const FrameSpread spread =
       informativeness.judge(image, options.camera, options.min_range_m, options.max_range_m);
@@ -180,6 +208,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
 
   FrameResult frame;
   frame.stamp_ns = image.stamp_ns;
+  frame.clock_set_back = *set_by_ns < 0;
   frame.informative = placed->informative;
   frame.method = step.method;
   frame.converged = step.converged && !step.jumped && !step.doubtful;
@@ -240,6 +269,7 @@ void Engine::add_reply(const SpotReply& reply) {
 
 std::string Engine::problem() const {
   if (!impl_->started) return "";
+  if (std::string problem = impl_->clock_problem(); !problem.empty()) return problem;
   if (std::string problem = impl_->inputs.problem(); !problem.empty()) return problem;
   if (impl_->external && !impl_->external->placed()) return "no odometry for the newest frame";
   return impl_->imu ? impl_->imu->problem(impl_->last_ns) : "";

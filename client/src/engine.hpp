@@ -61,12 +61,13 @@ struct FrameResult {
   /// beside a bare wall it is near 0 along the wall, and the pose follows the guess there. All 0 for a guess.
   Vector6d observed = Vector6d::Zero();
   std::optional<Matrix6d> covariance;  ///< of T_map_sensor, [rad; m], sensor axes: PoseDoubt
+  bool clock_set_back = false;         ///< before this frame: stamps of before say nothing about it
 };
 
 /// coasting: located once, the server is silent; lost: located once, but the pose may be anywhere by now.
 enum class Tracking { searching, tracking, coasting, lost };
 
-/// Not thread-safe except where said; stamps rise.
+/// Not thread-safe except where said; stamps rise, except where the device's clock was set (StampWatch).
 class Engine {
  public:
   explicit Engine(EngineOptions options);
@@ -75,12 +76,12 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   [[nodiscard]] Status add_imu(const ImuSample& sample);
-  /// Errors: wrong size, a stamp that is not newer than the last; the frame is then ignored.
+  /// Errors: wrong size, a stamp that StampWatch refuses; the frame is then ignored.
   [[nodiscard]] Result<FrameResult> add_depth(const DepthImage& image);
   /// A cloud in place of an image, in the sensor frame; the camera is then the part of the view that is used,
-  /// best with about as many pixels as the cloud has points. Errors: a stamp that is not newer than the last.
+  /// best with about as many pixels as the cloud has points. Errors: as above.
   [[nodiscard]] Result<FrameResult> add_points(StampNs stamp_ns, const Cloud& cloud_sensor);
-  /// Errors: the method is not external, not finite, a stamp that is not newer than the last.
+  /// Errors: the method is not external, not finite, a stamp that StampWatch refuses.
   [[nodiscard]] Status add_odometry(const OdometrySample& sample);
   /// The request that the last frame made due, if any; taken once.
   [[nodiscard]] std::optional<SpotRequest> take_request();

@@ -31,21 +31,42 @@ bool ExternalOdometry::continues(const OdometrySample& from, const OdometrySampl
              options_.jump_rad + dt * options_.turn_rate_rad_s;
 }
 
+/// What the device did until the clock of the odometry is known again, nobody knows.
+void ExternalOdometry::set_clock(StampNs by_ns) {
+  log::warning("odometry from outside: its clock was set back by {:.1f} s; a new segment starts",
+               -to_seconds(by_ns));
+  entries_.clear();
+  ++segment_;
+}
+
+/// Drivers fill what they do not know with NaN, or -1 as ROS has it.
+void ExternalOdometry::know(OdometrySample& sample) {
+  if (!sample.covariance) return;
+  if (sample.covariance->allFinite() && sample.covariance->diagonal().minCoeff() >= 0) return;
+  sample.covariance.reset();
+  if (!std::exchange(covariance_told_, true))
+    log::warning("odometry from outside: its covariance is not finite or negative; taken for unknown");
+}
+
+void ExternalOdometry::frames_clock_set() {
+  ++segments_before_;
+  ++last_segment_;
+}
+
 Status ExternalOdometry::add(const OdometrySample& sample) {
-  if (!sample.T_odom_base.matrix().allFinite() || (sample.covariance && !sample.covariance->allFinite()))
-    return fail("odometry at {} ns is not finite", sample.stamp_ns);
-  if (!entries_.empty() && sample.stamp_ns <= entries_.back().sample.stamp_ns)
-    return fail("odometry at {} ns is not newer than the last one ({} ns)", sample.stamp_ns,
-                entries_.back().sample.stamp_ns);
-  std::uint32_t segment = entries_.empty() ? 0 : entries_.back().segment;
+  if (!sample.T_odom_base.matrix().allFinite()) return fail("odometry at {} ns is not finite", sample.stamp_ns);
+  const auto set_by_ns = stamps_.add(sample.stamp_ns);
+  if (!set_by_ns) return tl::unexpected(set_by_ns.error());
+  if (*set_by_ns < 0) set_clock(*set_by_ns);
   if (!entries_.empty() && !continues(entries_.back().sample, sample)) {
-    ++segment;
+    ++segment_;
     log::warning("odometry from outside: {:.2f} m, {:.1f} deg in {:.2f} s; a new segment starts",
                  distance_m(entries_.back().sample.T_odom_base, sample.T_odom_base),
                  degrees(angle_between_rad(entries_.back().sample.T_odom_base, sample.T_odom_base)),
                  to_seconds(sample.stamp_ns - entries_.back().sample.stamp_ns));
   }
-  entries_.push_back({sample, segment});
+  entries_.push_back({sample, segment_});
+  know(entries_.back().sample);
   entries_.back().sample.T_odom_base = normalized(sample.T_odom_base);
   while (sample.stamp_ns - entries_.front().sample.stamp_ns > options_.keep_ns) entries_.pop_front();
   return {};
@@ -53,7 +74,7 @@ Status ExternalOdometry::add(const OdometrySample& sample) {
 
 void ExternalOdometry::place(const Entry& entry, const Pose& T_odom_base, OdometryStep& step) {
   placed_ = true;
-  last_segment_ = entry.segment;
+  last_segment_ = segments_before_ + entry.segment;
   T_odom_last_ = T_odom_base * options_.T_base_sensor;
   last_covariance_ = entry.sample.covariance;
   step.T_odom_sensor = T_odom_last_;

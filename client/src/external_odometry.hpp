@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "client/src/odometry.hpp"
+#include "client/src/sample_stamps.hpp"
 
 namespace liloc {
 
@@ -21,7 +22,8 @@ class ExternalOdometry {
  public:
   explicit ExternalOdometry(const ExternalOdometryOptions& options) : options_(options) {}
 
-  /// Errors: not finite, a stamp not newer than the last; the sample is then ignored.
+  /// A covariance that cannot be one is taken for unknown. Errors: not finite, StampWatch's; the sample is then
+  /// ignored.
   [[nodiscard]] Status add(const OdometrySample& sample);
   /// Where the sensor is at a frame's stamp: "external" between two samples, "guess" a little beyond the newest
   /// or where there is none near; the pose is then the last one and `placed` is false.
@@ -29,6 +31,8 @@ class ExternalOdometry {
   [[nodiscard]] bool placed() const { return placed_; }
   /// The growth of the covariance is counted from the last step on.
   void mark() { marked_ = last_covariance_; }
+  /// The frames' clock was set: a new segment starts.
+  void frames_clock_set();
 
  private:
   struct Entry {
@@ -38,11 +42,18 @@ class ExternalOdometry {
   [[nodiscard]] bool continues(const OdometrySample& from, const OdometrySample& to) const;
   void place(const Entry& entry, const Pose& T_odom_base, OdometryStep& step);
 
+  void set_clock(StampNs by_ns);
+  void know(OdometrySample& sample);
+
   ExternalOdometryOptions options_;
+  StampWatch stamps_{{"odometry", kClosestSampleNs, kJudgedSamples}};
   std::deque<Entry> entries_;  ///< by rising stamp
   Pose T_odom_last_ = Pose::Identity();
+  std::uint32_t segment_ = 0;          ///< of the newest sample
+  std::uint32_t segments_before_ = 0;  ///< that ended because the frames' clock was set
   std::uint32_t last_segment_ = 0;
   bool placed_ = false;
+  bool covariance_told_ = false;
   std::optional<Matrix6d> last_covariance_, marked_;
 };
 

@@ -10,7 +10,8 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kRecent = 31, kFewest = 5;
-constexpr double kSlack = 0.9;  // frames do not come at even distances
+constexpr StampNs kLate = from_ms(500);  // of what is older by more the clock was set
+constexpr double kSlack = 0.9;           // frames do not come at even distances
 
 }  // namespace
 
@@ -22,7 +23,7 @@ double FrameBudget::interval_ms() const {
 
 bool FrameBudget::admit(StampNs stamp_ns) {
   if (last_ns_ && stamp_ns > *last_ns_ && to_ms(stamp_ns - *last_ns_) < kSlack * interval_ms()) return false;
-  if (!last_ns_ || stamp_ns > *last_ns_) last_ns_ = stamp_ns;
+  if (!last_ns_ || stamp_ns > *last_ns_ || stamp_ns < *last_ns_ - kLate) last_ns_ = stamp_ns;
   return true;
 }
 

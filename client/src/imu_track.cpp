@@ -14,6 +14,10 @@ constexpr double kStandardGravity = 9.80665;
 constexpr int kUnitSamples = 20;  // judge the unit
 constexpr double kLargeRate = 3,
                  kLargeForce = 15;  // a value that stays at exactly one this large is the range's end
+// What no such sensor measures: those of phones, robots and depth cameras end at 2000 degrees per second (35
+// rad/s) and 16 g (157 m/s^2), or at 32 g (314 m/s^2); twice the turn rate still leaves no sharp frame.
+constexpr double kMostRate = 50, kMostForce = 320;
+constexpr StampNs kWildFor = from_ms(3000);  // it is told
 constexpr StampNs kSilent = from_ms(500), kClippedFor = from_ms(3000);
 constexpr double kDoubtTimeConstantS = 0.5, kDoubtSdRad = 0.3;  // of "up" in that time
 constexpr int kMargin = 12;  // samples of context for the filters on either side of a span
@@ -52,6 +56,8 @@ bool ImuTrack::doubtful(StampNs stamp_ns) const {
 }
 
 std::string ImuTrack::problem(StampNs now_ns) const {
+  if (wild_ns_ != 0 && now_ns >= wild_ns_ && now_ns - wild_ns_ < kWildFor)
+    return "the IMU says now and then what no such sensor measures (dropped)";
   if (entries_.empty()) return "no IMU samples come";
   if (now_ns - entries_.back().raw.stamp_ns > kSilent)
     return fmt::format("no IMU samples for {:.1f} s", to_seconds(now_ns - entries_.back().raw.stamp_ns));
@@ -60,17 +66,35 @@ std::string ImuTrack::problem(StampNs now_ns) const {
   return "";
 }
 
+Status ImuTrack::check(const ImuSample& sample) {
+  const Eigen::Vector3d &rate = sample.angular_velocity_rad_s, &force = sample.specific_force_m_s2;
+  if (!rate.allFinite() || !force.allFinite())
+    return fail("IMU sample at {} ns is not finite", sample.stamp_ns);
+  const auto set_by_ns = stamps_.add(sample.stamp_ns);
+  if (!set_by_ns) return tl::unexpected(set_by_ns.error());
+  if (*set_by_ns != 0) set_clock(*set_by_ns);
+  const double most_rate = rate.cwiseAbs().maxCoeff(), most_force = unit_ * force.cwiseAbs().maxCoeff();
+  if (most_rate <= kMostRate && most_force <= kMostForce) return {};
+  wild_ns_ = sample.stamp_ns;
+  return fail("IMU sample at {} ns says {:.4g} rad/s and {:.4g} m/s^2, no such sensor measures over {} and {}",
+              sample.stamp_ns, most_rate, most_force, kMostRate, kMostForce);
+}
+
+/// What is known of the device stays; what happened between the two clocks is not.
+void ImuTrack::set_clock(StampNs by_ns) {
+  if (by_ns < 0) log::warning("IMU: its clock was set back by {:.1f} s", -to_seconds(by_ns));
+  entries_.clear();
+  first_ns_ += by_ns;
+  clipped_ns_ = wild_ns_ = 0;
+}
+
 Status ImuTrack::add(const ImuSample& given) {
   ImuSample sample = given;
-  if (!sample.angular_velocity_rad_s.allFinite() || !sample.specific_force_m_s2.allFinite())
-    return fail("IMU sample at {} ns is not finite", sample.stamp_ns);
-  if (!entries_.empty() && sample.stamp_ns <= entries_.back().raw.stamp_ns)
-    return fail("IMU sample at {} ns is not newer than the last one ({} ns)", sample.stamp_ns,
-                entries_.back().raw.stamp_ns);
+  if (const Status ok = check(sample); !ok) return ok;
   find_unit(sample);
   sample.specific_force_m_s2 *= unit_;
   if (clips(sample)) clipped_ns_ = sample.stamp_ns;
-  if (entries_.empty()) {
+  if (!std::exchange(started_, true)) {
     first_ns_ = sample.stamp_ns;
     gyro_now_ = sample.angular_velocity_rad_s;
     force_now_ = sample.specific_force_m_s2;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/src/inertial.hpp"
+#include "client/src/sample_stamps.hpp"
 
 namespace liloc {
 
@@ -27,7 +28,8 @@ class ImuTrack {
  public:
   explicit ImuTrack(const ImuTrackOptions& options) : options_(options) {}
 
-  /// Errors: a value that is not finite, a stamp not newer than the last; the sample is then ignored.
+  /// Errors: a value that is not finite or that no such sensor measures, StampWatch's; the sample is then
+  /// ignored.
   [[nodiscard]] Status add(const ImuSample& sample);
 
   /// True when samples surround the span closely enough to integrate over it.
@@ -63,6 +65,8 @@ class ImuTrack {
     ImuSample raw;
     Eigen::Vector3d up;
   };
+  [[nodiscard]] Status check(const ImuSample& sample);
+  void set_clock(StampNs by_ns);
   void find_unit(const ImuSample& sample);
   [[nodiscard]] bool clips(const ImuSample& sample) const;
   [[nodiscard]] bool doubtful(StampNs stamp_ns) const;
@@ -73,13 +77,16 @@ class ImuTrack {
   [[nodiscard]] std::vector<InertialSample> span(StampNs from_ns, StampNs to_ns, bool smooth) const;
 
   ImuTrackOptions options_;
+  StampWatch stamps_{{"IMU", kClosestSampleNs, kJudgedSamples}};
   std::deque<Entry> entries_;
+  bool started_ = false;
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero(), up_ = Eigen::Vector3d::Zero();
   double gravity_m_s2_ = 9.81;
   double unit_ = 1;  ///< that turns the accelerometer's numbers into m/s^2
   double raw_force_sum_ = 0;
   int raw_count_ = 0;
   StampNs clipped_ns_ = 0;  ///< of the newest clipped sample
+  StampNs wild_ns_ = 0;     ///< of the newest that no such sensor measures
   bool calibrating_ = true;
   double calibrated_s_ = 0;
   StampNs first_ns_ = 0;

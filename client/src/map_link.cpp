@@ -15,6 +15,11 @@ bool MapLink::add(const SpotReply& reply, std::uint32_t segment) {
   return true;
 }
 
+void MapLink::clock_set(StampNs by_ns) {
+  answered_ns_ += by_ns;
+  verified_ns_ += by_ns;
+}
+
 Tracking MapLink::tracking(StampNs now_ns, std::uint32_t segment) const {
   if (!T_map_odom_) return Tracking::searching;
   const bool silent = now_ns - answered_ns_ > silent_after_ns_;

@@ -18,6 +18,8 @@ class MapLink {
   [[nodiscard]] bool located(std::uint32_t segment) const {
     return T_map_odom_ && segment == verified_segment_;
   }
+  /// The device's clock was set by so much.
+  void clock_set(StampNs by_ns);
   [[nodiscard]] Tracking tracking(StampNs now_ns, std::uint32_t segment) const;
 
  private:

@@ -175,12 +175,23 @@ void Odometry::tell_doubt(OdometryStep& step) {
 
 void Odometry::start_segment(StampNs stamp_ns) {
   log::warning("odometry lost for {:.1f} s: a new segment starts", to_seconds(stamp_ns - anchored_ns_));
+  begin_anew();
+}
+
+void Odometry::begin_anew() {
   map_.clear();
   standing_.forget();
   ++segment_;
   motion_.restart();
   covariance_.setZero();
   marked_.setZero();
+}
+
+void Odometry::clock_set() {
+  if (last_ns_ == 0) return;
+  for (StampNs* stamp : {&last_ns_, &unmatched_ns_, &stood_ns_, &anchored_ns_, &keyframe_ns_, &recovered_ns_})
+    *stamp = 0;
+  begin_anew();
 }
 
 void Odometry::remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor) {
@@ -215,7 +226,9 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
   OdometryStep step;
   if (last_ns_ == 0) {
     step.method = "first";
+    step.T_odom_sensor = T_odom_last_;
     step.converged = usable;
+    step.jumped = segment_ > 0;  // nobody saw the way from the last segment
     anchored_ns_ = image.stamp_ns;
   } else {
     const FrameStep from{last_ns_, image.stamp_ns, anchored_ns_, T_odom_last_};

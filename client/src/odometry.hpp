@@ -56,6 +56,8 @@ class Odometry {
   /// `usable`: the frame may be matched (not blocked). `imu` may be null.
   [[nodiscard]] OdometryStep step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,
                                   ImuTrack* imu);
+  /// The clock of the stamps was set: a new segment starts where the last frame was.
+  void clock_set();
   [[nodiscard]] const LocalMap& map() const { return map_; }
   /// The uncertainty of the motion is counted from the last step on.
   void mark() {
@@ -77,6 +79,7 @@ class Odometry {
   void reckon(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step);
   void coast(const MotionGuess& guess, const FrameStep& from, bool usable, OdometryStep& step);
   void start_segment(StampNs stamp_ns);
+  void begin_anew();
   void refer(const DepthImage& image, const OdometryStep& step);
   void tell_doubt(OdometryStep& step);
   void remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor);

@@ -62,6 +62,11 @@ void PoseDoubt::verified(const SpotReply& reply) {
   verified_ns_ = reply.stamp_ns;
 }
 
+void PoseDoubt::clock_set(StampNs by_ns) {
+  for (StampNs* stamp : {&stamp_ns_, &measured_ns_, &verified_ns_, &misfit_ns_})
+    if (*stamp != 0) *stamp += by_ns;
+}
+
 std::optional<PoseEstimate> PoseDoubt::estimate() const {
   if (!last_) return std::nullopt;
   const PoseEstimate now = carried(*last_, T_odom_last_.inverse() * T_odom_sensor_, sd_.rad, sd_.m);

@@ -29,6 +29,8 @@ class PoseDoubt {
   void asked(StampNs stamp_ns);
   /// A verified answer of this segment was taken over.
   void verified(const SpotReply& reply);
+  /// The device's clock was set by so much; a new segment begins with the next frame.
+  void clock_set(StampNs by_ns);
   /// The pose of the newest frame; empty before the first verified answer.
   [[nodiscard]] std::optional<PoseEstimate> estimate() const;
 

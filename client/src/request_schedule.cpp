@@ -63,6 +63,12 @@ void RequestSchedule::search_begins() {
   if (last_ns_ && pending_.empty()) hurried_ns_ = *last_ns_ + options_.searching_interval_ns;
 }
 
+void RequestSchedule::clock_set(StampNs by_ns) {
+  for (std::optional<StampNs>* stamp : {&last_ns_, &hurried_ns_, &searching_since_ns_})
+    if (*stamp) **stamp += by_ns;
+  for (Pending& p : pending_) p.stamp_ns += by_ns;
+}
+
 std::vector<std::uint64_t> RequestSchedule::take_unanswered(StampNs stamp_ns) {
   std::vector<std::uint64_t> late;
   std::erase_if(pending_, [&](const Pending& p) {

@@ -37,6 +37,8 @@ class RequestSchedule {
   void search_begins();
   /// The requests that have waited too long at `stamp_ns`; each is named once.
   [[nodiscard]] std::vector<std::uint64_t> take_unanswered(StampNs stamp_ns);
+  /// The device's clock was set by so much.
+  void clock_set(StampNs by_ns);
 
  private:
   [[nodiscard]] StampNs searching_gap_ns() const;

@@ -24,7 +24,7 @@ void SampleInbox::add(const OdometrySample& sample) {
   {
     const std::scoped_lock lock(mutex_);
     push(samples_.odometry, sample);
-    newest_odometry_ns_ = std::max(newest_odometry_ns_, sample.stamp_ns);
+    newest_odometry_ns_ = sample.stamp_ns;  // not the largest: one stamp far ahead would end all waiting
   }
   odometry_came_.notify_all();
 }

@@ -11,6 +11,7 @@
 #include "client/src/trace.hpp"
 #include "common/base/bounded_queue.hpp"
 #include "common/base/log.hpp"
+#include "common/base/stamp_watch.hpp"
 
 namespace liloc {
 namespace {
@@ -23,10 +24,18 @@ struct SensorFrame {
   DepthImage image;  ///< its stamp alone, of a cloud
   bool is_cloud = false;
   Cloud points_sensor;
+  SessionClock::Time arrived{};
 };
 
 SessionClock::Time now() {
   return std::chrono::steady_clock::now();
+}
+
+/// Of this computer: it tells units apart, nothing else.
+StampNs wall_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace
@@ -44,11 +53,12 @@ struct Session::Impl {
   void start();
   [[nodiscard]] Status push(SensorFrame frame);
   template <class Sample>
-  [[nodiscard]] Status push(const Sample& sample);
+  [[nodiscard]] Status push(const Sample& sample, const char* what, SessionReport::Counter refused);
   void process(const SensorFrame& input);
   [[nodiscard]] bool skips(StampNs stamp_ns);
   [[nodiscard]] Result<FrameResult> add(const SensorFrame& input);
   void hand_over_samples();
+  void keep_time(const SensorFrame& input, bool set_back);
   [[nodiscard]] std::optional<SpotRequest> take_request();
   void send(SpotRequest request);
   [[nodiscard]] bool follows(const SpotReply& reply);
@@ -90,17 +100,17 @@ bool Session::Impl::skips(StampNs stamp_ns) {
   if (!std::exchange(skipping, true))
     log::warning("{}: a frame needs {:.0f} ms of this computer: some frames are left out", id(),
                  budget.interval_ms());
-  report.count(&SessionStats::frames_skipped);
+  report.frame_skipped();
   return true;
 }
 
 void Session::Impl::hand_over_samples() {
   const auto hand_over = [this](const auto& all, auto add_to_engine, std::uint64_t SessionStats::*refused) {
     std::uint64_t count = 0;
+    std::string why;
     for (const auto& sample : all)
-      if (const Status ok = (engine.*add_to_engine)(sample); !ok && ++count == 1)
-        log::warning("{}", ok.error().message);
-    report.count(refused, count);
+      if (const Status ok = (engine.*add_to_engine)(sample); !ok && ++count == 1) why = ok.error().message;
+    if (count > 0) report.samples_refused(refused, count, why);
   };
   const SampleInbox::Samples taken = samples.take();
   hand_over(taken.imu, &Engine::add_imu, &SessionStats::imu_refused);
@@ -129,6 +139,15 @@ std::optional<SpotRequest> Session::Impl::take_request() {
   return request;
 }
 
+/// Of the frames that were taken alone: one stray stamp is not to spoil what is known of the clock.
+void Session::Impl::keep_time(const SensorFrame& input, bool set_back) {
+  if (set_back) clock.forget();
+  const bool jumped = clock.frame(input.image.stamp_ns, input.arrived);
+  if (!set_back && !jumped) return;
+  report.count(&SessionStats::clock_jumps);
+  if (jumped) log::warning("{}: the device's clock was set to {} ns", id(), input.image.stamp_ns);
+}
+
 void Session::Impl::process(const SensorFrame& input) {
   if (skips(input.image.stamp_ns)) return;
   if (options.engine.local == LocalMethod::external)
@@ -137,11 +156,10 @@ void Session::Impl::process(const SensorFrame& input) {
   hand_over_samples();
   const Result<FrameResult> frame = add(input);
   if (!frame) {
-    lock.unlock();
-    log::warning("{}: {}", id(), frame.error().message);
-    report.count(&SessionStats::frames_refused);
+    report.frame_refused(frame.error().message);
     return;
   }
+  keep_time(input, frame->clock_set_back);
   const Tracking tracking = engine.tracking();
   report.frame(*frame, tracking, engine.problem());
   auto request = take_request();
@@ -174,17 +192,22 @@ bool Session::Impl::follows(const SpotReply& reply) {
 
 Status Session::Impl::push(SensorFrame frame) {
   if (stopped) return fail("{}: stopped: no more frames are taken", id());
-  if (clock.frame(frame.image.stamp_ns, now())) {
-    report.count(&SessionStats::clock_jumps);
-    log::warning("{}: the device's clock was set to {} ns", id(), frame.image.stamp_ns);
+  if (const Status ok = check_unit_by(wall_ns(), frame.image.stamp_ns, "depth"); !ok) {
+    report.frame_refused(ok.error().message);
+    return fail("{}: {}", id(), ok.error().message);
   }
+  frame.arrived = now();
   if (frames.push(std::move(frame))) report.count(&SessionStats::frames_dropped);
   return {};
 }
 
 template <class Sample>
-Status Session::Impl::push(const Sample& sample) {
+Status Session::Impl::push(const Sample& sample, const char* what, SessionReport::Counter refused) {
   if (stopped) return fail("{}: stopped: no more samples are taken", id());
+  if (const Status ok = check_unit_by(wall_ns(), sample.stamp_ns, what); !ok) {
+    report.samples_refused(refused, 1, ok.error().message);
+    return fail("{}: {}", id(), ok.error().message);
+  }
   samples.add(sample);
   return {};
 }
@@ -220,13 +243,17 @@ Status Session::push_points(StampNs stamp_ns, Cloud cloud_sensor) {
 Status Session::push_odometry(const OdometrySample& sample) {
   if (impl_->options.engine.local != LocalMethod::external)
     return fail("{}: odometry from outside, but options.local is another; set it to external", impl_->id());
-  return impl_->push(sample);
+  return impl_->push(sample, "odometry", &SessionStats::odometry_refused);
 }
 
 Status Session::push_imu(const ImuSample& sample) {
   if (!impl_->options.engine.T_imu_sensor)
     return fail("{}: IMU sample without T_imu_sensor: set it in the options", impl_->id());
-  return impl_->push(sample);
+  if (!sample.angular_velocity_rad_s.allFinite() || !sample.specific_force_m_s2.allFinite()) {
+    impl_->report.count(&SessionStats::imu_refused);
+    return fail("{}: IMU sample at {} ns is not finite", impl_->id(), sample.stamp_ns);
+  }
+  return impl_->push(sample, "IMU", &SessionStats::imu_refused);
 }
 
 bool Session::add_reply(const SpotReply& reply) {
@@ -259,6 +286,7 @@ SessionStats Session::stats() const {
 
 Status Session::stop() {
   if (impl_->stopped.exchange(true)) return {};
+  impl_->report.ended();
   impl_->samples.close();
   impl_->frames.close();
   if (impl_->registration.joinable()) impl_->registration.join();

@@ -32,14 +32,16 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Queues; the oldest frame makes room when the queue is full. Error: stopped.
+  /// Queues; the oldest frame makes room when the queue is full. Errors: stopped, a stamp that is not positive
+  /// or looks like another unit.
   [[nodiscard]] Status push_depth(DepthImage image);
-  /// A cloud in place of an image; the same queue. Error: stopped.
+  /// A cloud in place of an image; the same queue. Errors: as above.
   [[nodiscard]] Status push_points(StampNs stamp_ns, Cloud cloud_sensor);
   /// Handed to the engine before the next frame, which waits a moment for it. Errors: the local method is not
-  /// external, stopped.
+  /// external, stopped, the stamp as above.
   [[nodiscard]] Status push_odometry(const OdometrySample& sample);
-  /// Handed to the engine before the next frame. Errors: no IMU in the options, stopped.
+  /// Handed to the engine before the next frame. Errors: no IMU in the options, not finite, stopped, the
+  /// stamp as above.
   [[nodiscard]] Status push_imu(const ImuSample& sample);
   /// Waits at most for the frame in work. False where another server's answers count (ServerChoice).
   bool add_reply(const SpotReply& reply);

@@ -9,6 +9,12 @@ bool SessionClock::frame(StampNs stamp_ns, Time arrived) {
   return true;
 }
 
+void SessionClock::forget() {
+  const std::scoped_lock lock(mutex_);
+  device_ = {};
+  ceiling_.reset();
+}
+
 void SessionClock::stamp(SpotRequest& request, Time sent) const {
   const std::scoped_lock lock(mutex_);
   request.sent_ns = device_.now(sent).value_or(0);

@@ -15,6 +15,8 @@ class SessionClock {
 
   /// A frame of the device came. True when its clock was set: all is then learned anew.
   bool frame(StampNs stamp_ns, Time arrived);
+  /// The device's clock was set: all is learned anew.
+  void forget();
   /// Writes the time of sending, and the frame's time by the ceiling's clock where that is known well.
   void stamp(SpotRequest& request, Time sent) const;
   /// Learns from a reply. True when the two clocks have jumped against each other.

@@ -10,7 +10,9 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kLatencies = 512;
-constexpr StampNs kLongestStep = from_ms(1000);  // between frames that carry the pose on
+constexpr int kRefused = 3;                       // frames in a row: that is no hiccup
+constexpr auto kBlind = std::chrono::seconds(2);  // who is carried may be metres off by then
+constexpr StampNs kLongestStep = from_ms(1000);   // between frames that carry the pose on
 
 const char* name_of(Tracking tracking) {
   switch (tracking) {
@@ -46,6 +48,8 @@ void SessionReport::log_changes(Tracking tracking, const std::string& problem) c
 void SessionReport::frame(const FrameResult& frame, Tracking tracking, std::string problem) {
   const std::scoped_lock lock(mutex_);
   log_changes(tracking, problem);
+  seen_ = std::chrono::steady_clock::now();
+  refused_ = 0;
   tracking_ = tracking;
   stats_.problem = std::move(problem);
   ++stats_.frames;
@@ -53,8 +57,41 @@ void SessionReport::frame(const FrameResult& frame, Tracking tracking, std::stri
   latencies_ms_.push_back(frame.latency_ms);
   if (latencies_ms_.size() > kLatencies) latencies_ms_.pop_front();
   if (newest_ && frame.T_map_sensor)  // a pause is not counted in full
-    stats_.localized_s += to_seconds(std::min(frame.stamp_ns - newest_->stamp_ns, kLongestStep));
+    stats_.localized_s += to_seconds(std::clamp<StampNs>(frame.stamp_ns - newest_->stamp_ns, 0, kLongestStep));
   newest_ = frame;
+}
+
+void SessionReport::tell(Counter what, const std::string& why) {
+  auto limit = std::ranges::find(limits_, what, &std::pair<Counter, LineLimit>::first);
+  if (limit == limits_.end()) limit = limits_.insert(limit, {what, {}});
+  const auto held = limit->second.pass(std::chrono::steady_clock::now());
+  if (!held) return;
+  log::warning("{}: {}{}", client_id_, why, *held > 0 ? fmt::format(" (and {} before)", *held) : "");
+}
+
+void SessionReport::frame_refused(const std::string& why) {
+  const std::scoped_lock lock(mutex_);
+  ++refused_;
+  ++stats_.frames_refused;
+  stats_.problem = why;
+  tell(&SessionStats::frames_refused, why);
+}
+
+void SessionReport::frame_skipped() {
+  const std::scoped_lock lock(mutex_);
+  ++stats_.frames_skipped;
+  seen_ = std::chrono::steady_clock::now();
+}
+
+void SessionReport::samples_refused(Counter what, std::uint64_t count, const std::string& why) {
+  const std::scoped_lock lock(mutex_);
+  stats_.*what += count;
+  tell(what, why);
+}
+
+void SessionReport::ended() {
+  const std::scoped_lock lock(mutex_);
+  ended_ = true;
 }
 
 void SessionReport::reply(const SpotReply& reply) {
@@ -69,7 +106,7 @@ void SessionReport::spent(double cpu_s) {
   stats_.cpu_s += cpu_s;
 }
 
-void SessionReport::count(std::uint64_t SessionStats::*what, std::uint64_t by) {
+void SessionReport::count(Counter what, std::uint64_t by) {
   const std::scoped_lock lock(mutex_);
   stats_.*what += by;
 }
@@ -79,14 +116,21 @@ std::optional<FrameResult> SessionReport::newest() const {
   return newest_;
 }
 
-Tracking SessionReport::tracking() const {
-  const std::scoped_lock lock(mutex_);
-  return tracking_;
+bool SessionReport::blind(Time now) const {
+  return newest_ && !ended_ && (refused_ >= kRefused || now - seen_ > kBlind);
 }
 
-SessionStats SessionReport::stats() const {
+Tracking SessionReport::tracking(Time now) const {
+  const std::scoped_lock lock(mutex_);
+  return tracking_ != Tracking::searching && blind(now) ? Tracking::lost : tracking_;
+}
+
+SessionStats SessionReport::stats(Time now) const {
   const std::scoped_lock lock(mutex_);
   SessionStats stats = stats_;
+  if (blind(now) && refused_ == 0)
+    stats.problem =
+        fmt::format("no depth frames for {:.1f} s", std::chrono::duration<double>(now - seen_).count());
   if (latencies_ms_.empty()) return stats;
   const std::vector<double> latencies(latencies_ms_.begin(), latencies_ms_.end());
   stats.frame_ms_median = median(latencies);

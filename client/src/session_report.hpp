@@ -1,9 +1,12 @@
 #pragma once
 #include <deque>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "client/src/clock_estimator.hpp"
 #include "client/src/engine.hpp"
+#include "client/src/line_limit.hpp"
 
 namespace liloc {
 
@@ -25,20 +28,35 @@ struct SessionStats {
 /// Thread-safe.
 class SessionReport {
  public:
+  using Time = std::chrono::steady_clock::time_point;
+  using Counter = std::uint64_t SessionStats::*;
+
   explicit SessionReport(std::string client_id) : client_id_(std::move(client_id)) {}
 
   /// A frame was registered; `problem` is what is wrong with the input as of it.
   void frame(const FrameResult& frame, Tracking tracking, std::string problem);
+  /// A frame was refused: counted, told, and the problem until the next one is taken.
+  void frame_refused(const std::string& why);
+  /// A frame was left out on purpose: the device still sees.
+  void frame_skipped();
+  /// Of `count` samples the first for this reason.
+  void samples_refused(Counter what, std::uint64_t count, const std::string& why);
+  /// No more frames are to come, and none is missed.
+  void ended();
   void reply(const SpotReply& reply);
   void spent(double cpu_s);
-  void count(std::uint64_t SessionStats::*what, std::uint64_t by = 1);
+  void count(Counter what, std::uint64_t by = 1);
 
   [[nodiscard]] std::optional<FrameResult> newest() const;
-  [[nodiscard]] Tracking tracking() const;
+  /// Lost when no frame was taken for two seconds, or the newest three were refused: the device may be
+  /// anywhere by then.
+  [[nodiscard]] Tracking tracking(Time now = std::chrono::steady_clock::now()) const;
   /// All but the clock, which others know.
-  [[nodiscard]] SessionStats stats() const;
+  [[nodiscard]] SessionStats stats(Time now = std::chrono::steady_clock::now()) const;
 
  private:
+  void tell(Counter what, const std::string& why);
+  [[nodiscard]] bool blind(Time now) const;
   void log_changes(Tracking tracking, const std::string& problem) const;
 
   const std::string client_id_;
@@ -46,7 +64,11 @@ class SessionReport {
   std::optional<FrameResult> newest_;
   Tracking tracking_ = Tracking::searching;
   SessionStats stats_;
-  std::deque<double> latencies_ms_;  ///< of the recent frames
+  Time seen_{};      ///< when the newest frame was taken, or left out on purpose
+  int refused_ = 0;  ///< frames in a row
+  bool ended_ = false;
+  std::vector<std::pair<Counter, LineLimit>> limits_;  ///< by what was refused
+  std::deque<double> latencies_ms_;                    ///< of the recent frames
 };
 
 }  // namespace liloc

@@ -22,7 +22,8 @@ struct StampedOdometry {
   StampNs stamp_ns = 0;
   std::string frame_id;
   Pose T_odom_base = Pose::Identity();
-  Matrix6d covariance = Matrix6d::Zero();  ///< [rad; m], axes of the odometry's frame
+  /// [rad; m], axes of the odometry's frame. As it came: drivers that do not know it send 0, -1 or NaN.
+  Matrix6d covariance = Matrix6d::Zero();
 };
 
 /// A topic as ROS 2 users name it ("/camera/depth/image_raw", with the slash or without) on the wire.

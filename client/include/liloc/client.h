@@ -150,7 +150,7 @@ typedef struct liloc_reply {
 typedef struct liloc_stats {
   uint64_t frames;         /* processed */
   uint64_t frames_dropped; /* the queue was full */
-  uint64_t frames_refused; /* wrong size, or a stamp that was not newer */
+  uint64_t frames_refused; /* wrong size, or a stamp that was not newer, far off or in another unit */
   uint64_t frames_uninformative;
   uint64_t imu_refused;
   uint64_t requests, requests_unsent, requests_unanswered;
@@ -213,7 +213,7 @@ liloc_status liloc_client_push_imu(liloc_client* client, int64_t stamp_ns, const
 liloc_status liloc_client_push_points(liloc_client* client, const float* xyz, size_t count, int64_t stamp_ns);
 /* With LILOC_LOCAL_EXTERNAL: where the odometry has the base, in its own frame; often, and in order. A gap over
  * a second or a jump starts a new odom_segment. `covariance`: NULL, or 36 values of the pose, row-major, [rad;
- * m]; its growth bounds the motion's error. */
+ * m]; its growth bounds the motion's error; NaN or a negative variance: unknown. */
 liloc_status liloc_client_push_odometry(liloc_client* client, int64_t stamp_ns, const liloc_pose* T_odom_base,
                                         const double* covariance);
 

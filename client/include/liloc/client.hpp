@@ -95,8 +95,8 @@ struct Options {
 
 /// searching: never located. tracking: located, the server answers. coasting: located once, and carried on by
 /// the device alone because the server is silent or cannot answer. lost: located once, but the pose's standard
-/// deviation exceeds Options::lost_sd_m or lost_sd_deg, or the inputs contradict each other; the pose is told
-/// on.
+/// deviation exceeds Options::lost_sd_m or lost_sd_deg, or the inputs contradict each other, or no frame was
+/// taken for two seconds or the newest three were refused; the pose is told on.
 enum class State { searching, tracking, coasting, lost };
 
 struct PoseUpdate {
@@ -134,7 +134,7 @@ struct Reply {
 struct Stats {
   std::uint64_t frames = 0;          ///< processed
   std::uint64_t frames_dropped = 0;  ///< the queue was full
-  std::uint64_t frames_refused = 0;  ///< wrong size, or a stamp that was not newer
+  std::uint64_t frames_refused = 0;  ///< wrong size, or a stamp that was not newer, far off or in another unit
   std::uint64_t frames_uninformative = 0;
   std::uint64_t imu_refused = 0;
   std::uint64_t requests = 0, requests_unsent = 0, requests_unanswered = 0;
@@ -172,11 +172,16 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
+  /// Stamps, of all that is pushed: a lone one far off (by over 10 s, or half a second back) is dropped; of
+  /// three in a row the client takes it that the clock was set, starts a new odom_segment and says so in
+  /// Stats::problem. Errors at once: not positive, or seconds, milliseconds or microseconds of this computer's
+  /// time.
+
   /// Row-major 16-bit z-depth of the camera's size, 0 = no return; copied. Errors: the size differs from the
   /// camera's, the client was stopped.
   Outcome<Taken> push_depth(const std::uint16_t* units, int width, int height, std::int64_t stamp_ns);
-  /// IMU axes; `specific_force`: a device at rest reads +g upwards. Errors: no T_imu_sensor, not finite,
-  /// stopped.
+  /// IMU axes; `specific_force`: a device at rest reads +g upwards. What no such sensor measures (over 50 rad/s
+  /// or 320 m/s^2) is dropped and counted. Errors: no T_imu_sensor, not finite, stopped.
   Outcome<Taken> push_imu(std::int64_t stamp_ns, const std::array<double, 3>& angular_velocity_rad_s,
                           const std::array<double, 3>& specific_force_m_s2);
   /// `xyz`: `count` points in the sensor's frame, three floats each, copied; in place of a depth image. Of the
@@ -185,7 +190,8 @@ class Client {
   Outcome<Taken> push_points(const float* xyz, std::size_t count, std::int64_t stamp_ns);
   /// With Local::external: where the odometry has the base, in its own frame; often, and in order. A gap over a
   /// second or a jump starts a new odom_segment. `covariance`: of the pose, row-major, [rad; m]; its growth
-  /// bounds the motion's error. Errors: another method, not finite, not a rotation, stopped.
+  /// bounds the motion's error; one that is not finite, or has a negative variance, is taken for unknown.
+  /// Errors: another method, a pose that is not finite or no rotation, stopped.
   Outcome<Taken> push_odometry(std::int64_t stamp_ns, const Pose& T_odom_base,
                                const std::optional<std::array<double, 36>>& covariance = {});
 

@@ -200,7 +200,8 @@ class Client:
         another dtype, ValueError for another size than the camera's, Error after stop."""
     def push_imu(self, stamps_ns: Union[int, npt.NDArray[np.int64]], samples: npt.ArrayLike) -> None:
         """One stamp and six values, or N stamps and N x 6: wx wy wz (rad/s), ax ay az (m/s^2), IMU axes; at rest the
-        latter read +g upwards. Raises ValueError for wrong shapes, or without T_imu_sensor."""
+        latter read +g upwards. Raises ValueError for wrong shapes, without T_imu_sensor, or when one is not finite: the others are
+        taken."""
     def push_points(self, points: npt.ArrayLike, stamp_ns: int) -> None:
         """N x 3 in the sensor's frame, in place of a depth image. Those within the camera are used: give it the
         sensor's field of view and about as many pixels as it has points there."""
@@ -208,7 +209,8 @@ class Client:
         self, stamp_ns: int, T_odom_base: npt.ArrayLike, covariance: Optional[npt.ArrayLike] = None
     ) -> None:
         """With local="external": where the odometry has the base, 4x4, in its own frame; often, and in order. A gap
-        over a second or a jump starts a new odom_segment. covariance: 6x6 of the pose, [rad; m]."""
+        over a second or a jump starts a new odom_segment. covariance: 6x6 of the pose, [rad; m];
+        NaN or a negative variance: unknown."""
     def newest(self) -> PoseUpdate:
         """Of the newest processed frame."""
     def wait(self, newer_than_ns: int = 0, timeout_s: float = 1.0) -> Optional[PoseUpdate]:

@@ -72,11 +72,13 @@ class Feeder {
     for (int i = 0; i < most_frames; ++i) {
       if (condition(client_.newest())) return true;
       const DepthImage image = frame_at(room_, frame_++);
-      EXPECT_TRUE(client_.push_depth(image.units.data(), image.width, image.height, image.stamp_ns));
+      EXPECT_TRUE(client_.push_depth(image.units.data(), image.width, image.height, image.stamp_ns + off_ns));
       std::this_thread::sleep_for(10ms);
     }
     return condition(client_.newest());
   }
+
+  StampNs off_ns = 0;  ///< of the stamps
 
  private:
   Client& client_;
@@ -237,6 +239,52 @@ TEST(Client, OdometryOfOthersAndCloudsGoThrough) {
   EXPECT_NEAR(newest.T_map_sensor->translation_m[0], walk(t).translation().x() + 1, 0.02);
   EXPECT_THAT(client.push_points(nullptr, 1, 1).error(), HasSubstr("NULL"));
   EXPECT_THAT(client.push_odometry(1, {{0, 0, 0}, {0, 0, 0, 0}}).error(), HasSubstr("T_odom_base"));
+}
+
+TEST(Client, OdometryWithAnUnknownCovarianceIsTaken) {
+  Options o = options();
+  o.local = client::Local::external;
+  auto made = Client::create(o);
+  ASSERT_TRUE(made) << made.error();
+  std::array<double, 36> unknown{};
+  unknown.fill(NAN);
+  const auto taken = made.value()->push_odometry(kStart, {}, unknown);
+  EXPECT_TRUE(taken) << taken.error();
+}
+
+TEST(Client, AClockSetBackIsToldAndTheDeviceIsLocatedAgain) {
+  FakeServer server;
+  auto made = Client::create(options());
+  ASSERT_TRUE(made) << made.error();
+  Client& client = *made.value();
+  Feeder feeder(client);
+  const auto tracking = [](const auto& pose) { return pose.state == State::tracking; };
+  ASSERT_TRUE(feeder.until(tracking));
+  const auto segment = client.newest().odom_segment;
+  feeder.off_ns = -from_seconds(10);
+  ASSERT_TRUE(
+      feeder.until([&](const auto& pose) { return pose.odom_segment > segment && tracking(pose); }, 45));
+  EXPECT_THAT(client.stats().problem, HasSubstr("clock was set back"));
+  EXPECT_LE(client.stats().frames_refused, 2U);
+}
+
+TEST(Client, NotANumberFromTheImuAndOtherUnitsAreRefusedAtOnce) {
+  Options o = options();
+  o.T_imu_sensor.emplace();
+  auto made = Client::create(o);
+  ASSERT_TRUE(made) << made.error();
+  Client& client = *made.value();
+  EXPECT_THAT(client.push_imu(kStart, {0, NAN, 0}, {0, 0, 9.81}).error(), HasSubstr("finite"));
+  EXPECT_THAT(client.push_imu(0, {0, 0, 0}, {0, 0, 9.81}).error(), HasSubstr("not set"));
+  const DepthImage image = covered_at(0);
+  const auto push = [&](StampNs stamp_ns) {
+    return client.push_depth(image.units.data(), 160, 120, stamp_ns).error();
+  };
+  const StampNs now_ns = std::chrono::system_clock::now().time_since_epoch() / 1ns;
+  EXPECT_THAT(push(now_ns / 1000), HasSubstr("microseconds"));
+  EXPECT_THAT(push(-now_ns), HasSubstr("not set"));
+  EXPECT_EQ(client.stats().frames_refused, 2U);
+  EXPECT_EQ(client.stats().imu_refused, 2U);
 }
 
 TEST(Client, OdometryOfOthersNeedsItsMethod) {

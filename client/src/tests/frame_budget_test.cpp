@@ -63,5 +63,14 @@ TEST(FrameBudget, ThreadTimeRunsWithWork) {
   EXPECT_GT(thread_cpu_ms(), before);
 }
 
+TEST(FrameBudget, IsKeptAfterTheClockWasSetBack) {
+  FrameBudget budget(1);
+  for (int i = 0; i < 10; ++i) budget.spent(100, 100);
+  ASSERT_TRUE(budget.admit(from_seconds(100)));
+  int admitted = 0;
+  for (int i = 0; i < 100; ++i) admitted += budget.admit(from_seconds(80) + from_ms(10.0 * i));
+  EXPECT_LE(admitted, 12);  // of a second
+}
+
 }  // namespace
 }  // namespace liloc

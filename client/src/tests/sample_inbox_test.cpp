@@ -46,6 +46,16 @@ TEST(SampleInbox, WaitsForOdometryOfTheStamp) {
   EXPECT_EQ(waited.wait_for(20s), std::future_status::ready);
 }
 
+TEST(SampleInbox, WaitsOnAfterAStampFarAhead) {
+  SampleInbox inbox;
+  inbox.add(odometry_at(from_seconds(3600)));
+  inbox.add(odometry_at(6));
+  auto waited = std::async(std::launch::async, [&] { inbox.await_odometry(7, 1h); });
+  EXPECT_EQ(waited.wait_for(20ms), std::future_status::timeout);
+  inbox.add(odometry_at(7));
+  EXPECT_EQ(waited.wait_for(20s), std::future_status::ready);
+}
+
 TEST(SampleInbox, WaitsNoLongerThanToldNorAfterClose) {
   SampleInbox inbox;
   inbox.add(odometry_at(1));

@@ -63,5 +63,17 @@ TEST_F(TwoClocks, NothingIsLearnedWithoutAFrame) {
   EXPECT_EQ(request.sent_ns, 0);
 }
 
+TEST_F(TwoClocks, AfterItsClockWasSetBackTheDeviceIsTimedRightAtOnce) {
+  for (int i = 0; i < 10; ++i) exchange();
+  ahead_ns -= from_ms(10'000);
+  clock.forget();
+  EXPECT_FALSE(clock.offset());
+  exchange();
+  EXPECT_EQ(sent.sent_ns, sent.stamp_ns);
+  for (int i = 0; i < 3; ++i) exchange();
+  EXPECT_NEAR(to_ms(sent.stamp_ns - sent.ceiling_stamp_ns), -9600, 0.01);
+  EXPECT_FALSE(jumped);
+}
+
 }  // namespace
 }  // namespace liloc

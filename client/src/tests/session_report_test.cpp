@@ -48,6 +48,36 @@ TEST(SessionReport, LogsWhatChangesOnce) {
   EXPECT_EQ(report.stats().problem, "");
 }
 
+TEST(SessionReport, IsLostWithoutFramesAndComesBackWithThem) {
+  using namespace std::chrono_literals;
+  SessionReport report("robot1");
+  const auto later = std::chrono::steady_clock::now() + 5s;
+  EXPECT_EQ(report.tracking(later), Tracking::searching);
+  EXPECT_EQ(report.stats(later).problem, "");
+  report.frame(frame_at(1, true), Tracking::tracking, "");
+  EXPECT_EQ(report.tracking(), Tracking::tracking);
+  EXPECT_EQ(report.tracking(later), Tracking::lost);
+  EXPECT_THAT(report.stats(later).problem, testing::HasSubstr("no depth frames for"));
+  report.frame_refused("wrong");
+  report.frame_refused("wrong");
+  EXPECT_EQ(report.tracking(), Tracking::tracking);
+  report.frame_refused("wrong");
+  EXPECT_EQ(report.tracking(), Tracking::lost);
+  EXPECT_EQ(report.stats().problem, "wrong");
+  report.frame(frame_at(2, true), Tracking::tracking, "");
+  EXPECT_EQ(report.tracking(), Tracking::tracking);
+  EXPECT_EQ(report.stats().problem, "");
+  report.ended();
+  EXPECT_EQ(report.tracking(later), Tracking::tracking);  // nothing more is to come
+}
+
+TEST(SessionReport, TimeRunsNotBackwards) {
+  SessionReport report("robot1");
+  for (const double second : {100.0, 100.5, 90.0, 90.5})
+    report.frame(frame_at(second, true), Tracking::tracking, "");
+  EXPECT_DOUBLE_EQ(report.stats().localized_s, 1);
+}
+
 TEST(SessionReport, CountsByWhatAnAnswerSays) {
   SessionReport report("robot1");
   SpotReply reply;

@@ -1,0 +1,11 @@
+#pragma once
+#include "common/base/stamp_watch.hpp"
+
+namespace liloc {
+
+// No IMU or odometry has 50 000 samples a second; a driver that stamps as it reads may have a USB packet of
+// them that lie closer.
+constexpr StampNs kClosestSampleNs = 20'000;
+constexpr std::size_t kJudgedSamples = 20;
+
+}  // namespace liloc

@@ -1,10 +1,13 @@
 #include "client/app/given_options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
+#include "common/command/text.hpp"
 #include "common/geometry/pose.hpp"
+#include "common/wire/participant.hpp"
 #include "common/wire/sensors.hpp"
 
 namespace liloc {
@@ -19,13 +22,52 @@ Status settle_pose(const std::string& name, const std::vector<double>& translati
   to.emplace();
   std::copy_n(translation.begin(), 3, to->translation_m.begin());
   std::copy_n(rotation.begin(), 4, to->rotation_xyzw.begin());
+  const auto T = valid_pose(Eigen::Vector3d(translation.data()), Eigen::Vector4d(rotation.data()), name);
+  if (T) return {};
+  // It names a file's fields, "imu.rotation_xyzw has length 2": on the command line they have flags.
+  std::string message = "--" + T.error().message;
+  for (const auto& [field, flag] :
+       {std::pair{".rotation_xyzw", "-rotation"}, std::pair{".translation", "-translation"}})
+    if (const auto at = message.find(field); at != std::string::npos)
+      message.replace(at, std::string(field).size(), flag);
+  return tl::unexpected(Error{message});
+}
+
+Status settle_name(const char* flag, const std::string& given, const std::string& usual, std::string& to) {
+  const auto topic = wire::dds_topic(given.empty() ? usual : given);
+  if (!topic)
+    return fail("{} is '{}'; give a ROS name: letters, digits, _ and /, at most 200", flag,
+                command::excerpt(given));
+  to = *topic;
   return {};
 }
 
-Status settle_name(const std::string& given, const std::string& usual, std::string& to) {
-  const auto topic = wire::dds_topic(given.empty() ? usual : given);
-  if (!topic) return tl::unexpected(topic.error());
-  to = *topic;
+/// As tf2 has it: no leading slash, no blank, and a frame is not its own parent.
+Status check_frames(const wire::RosNames& names) {
+  constexpr std::size_t kLongest = 200;  // as of a topic
+  const std::pair<const char*, const std::string*> frames[] = {{"--map-frame", &names.world_frame},
+                                                               {"--odom-frame", &names.odom_frame},
+                                                               {"--sensor-frame", &names.sensor_frame}};
+  for (const auto& [flag, name] : frames) {
+    const bool plain = std::ranges::all_of(*name, [](unsigned char c) { return c > ' ' && c != 0x7f; });
+    if (name->empty() || name->size() > kLongest || name->front() == '/' || !plain)
+      return fail("{} is '{}'; tf2 takes no leading /, no blank and no empty name", flag,
+                  command::excerpt(*name));
+    for (const auto& [other_flag, other] : frames)
+      if (other != name && *other == *name)
+        return fail("{} and {} are both '{}'; give them different names", other_flag, flag,
+                    command::excerpt(*name));
+  }
+  return {};
+}
+
+/// Hosts and the interface; they go into the transport's configuration.
+Status check_network(const client::Options& c) {
+  wire::DomainOptions seat;
+  seat.domain = c.domain;
+  seat.interface = c.network_interface;
+  seat.peers = c.peers;
+  if (const Status ok = wire::check(seat); !ok) return fail("--{}", command::one_line(ok.error().message));
   return {};
 }
 
@@ -35,21 +77,21 @@ Status settle_topics(const GivenOptions& given, DaemonOptions& options) {
   wire::RosNames& out = options.ros.names;
   out = wire::RosNames::of(id);
   in.use_points = !given.points.empty();
-  const std::tuple<std::string, std::string, std::string*> names[] = {
-      {given.depth, id + "/depth/image_rect_raw", &in.depth},
-      {given.camera_info, id + "/depth/camera_info", &in.camera_info},
-      {given.points, id + "/points", &in.points},
-      {given.imu, id + "/imu", &in.imu},
-      {given.pose, id + "/pose", &out.pose},
-      {given.odom, id + "/odom", &out.odometry},
-      {given.diagnostics, "diagnostics", &out.diagnostics}};
-  for (const auto& [typed, usual, to] : names)
-    if (const Status ok = settle_name(typed, usual, *to); !ok) return ok;
+  const std::tuple<const char*, std::string, std::string, std::string*> names[] = {
+      {"--depth-topic", given.depth, id + "/depth/image_rect_raw", &in.depth},
+      {"--camera-info-topic", given.camera_info, id + "/depth/camera_info", &in.camera_info},
+      {"--points-topic", given.points, id + "/points", &in.points},
+      {"--imu-topic", given.imu, id + "/imu", &in.imu},
+      {"--pose-topic", given.pose, id + "/pose", &out.pose},
+      {"--odom-topic", given.odom, id + "/odom", &out.odometry},
+      {"--diagnostics-topic", given.diagnostics, "diagnostics", &out.diagnostics}};
+  for (const auto& [flag, typed, usual, to] : names)
+    if (const Status ok = settle_name(flag, typed, usual, *to); !ok) return ok;
   if (!given.odometry.empty()) out.odom_frame = "odom";
   if (!given.map_frame.empty()) out.world_frame = given.map_frame;
   if (!given.odom_frame.empty()) out.odom_frame = given.odom_frame;
   if (!given.sensor_frame.empty()) out.sensor_frame = given.sensor_frame;
-  return {};
+  return check_frames(out);
 }
 
 /// Odometry that others keep, and where the sensor sits on what it moves.
@@ -57,7 +99,8 @@ Status settle_odometry(const GivenOptions& given, DaemonOptions& options) {
   if (given.odometry.empty() && !given.base_translation.empty())
     return fail("--base-... says how the sensor is mounted for --odometry-topic: give that, or leave it out");
   if (!given.odometry.empty()) {
-    if (const Status ok = settle_name(given.odometry, "", options.topics.odometry); !ok) return ok;
+    if (const Status ok = settle_name("--odometry-topic", given.odometry, "", options.topics.odometry); !ok)
+      return ok;
     options.client.local = client::Local::external;
   }
   return settle_pose("base", given.base_translation, given.base_rotation, options.client.T_base_sensor);
@@ -82,6 +125,16 @@ Status settle_points_view(const std::vector<double>& view, DaemonOptions& option
 
 }  // namespace
 
+Status check_imu(const DaemonOptions& options) {
+  const auto local = options.client.local;
+  if (options.client.T_imu_sensor || local == client::Local::cloud || local == client::Local::external)
+    return {};
+  return fail(
+      "--local {} needs an IMU: give --imu-translation and --imu-rotation, a --device that has one, or "
+      "--local cloud",
+      local == client::Local::inertial ? "inertial" : "dead-reckoning");
+}
+
 Status settle(const GivenOptions& given, DaemonOptions& options) {
   static const std::map<std::string, client::Local> methods{{"cloud", client::Local::cloud},
                                                             {"inertial", client::Local::inertial},
@@ -99,8 +152,11 @@ Status settle(const GivenOptions& given, DaemonOptions& options) {
     return ok;
   if (options.client.T_imu_sensor && !options.device_file.empty())
     return fail("--imu-... and --device contradict each other: give one of them");
+  if (const Status ok = check_network(options.client); !ok) return ok;
   if (const Status ok = settle_topics(given, options); !ok) return ok;
   if (const Status ok = settle_odometry(given, options); !ok) return ok;
+  if (options.device_file.empty())
+    if (const Status ok = check_imu(options); !ok) return ok;
   return settle_points_view(given.points_view, options);
 }
 

@@ -20,4 +20,7 @@ struct GivenOptions {
 /// range, with the option's name.
 [[nodiscard]] Status settle(const GivenOptions& given, DaemonOptions& options);
 
+/// Local registration by an IMU needs one; to be asked once the device's file has been read.
+[[nodiscard]] Status check_imu(const DaemonOptions& options);
+
 }  // namespace liloc

@@ -3,10 +3,14 @@
 #include <CLI/CLI.hpp>
 
 #include "client/app/given_options.hpp"
+#include "common/command/checks.hpp"
+#include "common/command/program_options.hpp"
 #include "common/recording/recording.hpp"
 
 namespace liloc {
 namespace {
+
+using command::in_range;
 
 void declare_device(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
   auto* device = app.add_option_group("device");
@@ -14,15 +18,20 @@ void declare_device(CLI::App& app, DaemonOptions& options, GivenOptions& given) 
   device
       ->add_option("--depth-scale", options.client.camera.depth_scale_m,
                    "Metres per unit of a 16-bit depth image, without --device")
+      ->check(in_range(1e-6, 1.0))
       ->capture_default_str();
   device
       ->add_option("--imu-translation", given.imu_translation,
                    "T_imu_sensor of a device with an IMU, without --device: x y z in m")
-      ->expected(3);
-  device->add_option("--imu-rotation", given.imu_rotation, "The same: quaternion x y z w")->expected(4);
+      ->expected(3)
+      ->check(command::finite());
+  device->add_option("--imu-rotation", given.imu_rotation, "The same: quaternion x y z w")
+      ->expected(4)
+      ->check(command::finite());
   device
       ->add_option("--still-seconds", options.client.still_seconds,
                    "The device stands still for so long at the start, without --device")
+      ->check(in_range(0.0, 600.0))
       ->capture_default_str();
 }
 
@@ -38,6 +47,7 @@ void declare_topics(CLI::App& app, GivenOptions& given) {
                    "Part of the cloud that is used, without --device: columns, rows, degrees across and down, "
                    "with about one pixel per point")
       ->expected(4)
+      ->check(command::finite())
       ->capture_default_str();
   topics->add_option("--imu-topic", given.imu, "Imu; default: <id>/imu");
   topics->add_option("--odometry-topic", given.odometry,
@@ -45,8 +55,11 @@ void declare_topics(CLI::App& app, GivenOptions& given) {
   topics
       ->add_option("--base-translation", given.base_translation,
                    "T_base_sensor: the depth sensor on what that odometry moves, x y z in m")
-      ->expected(3);
-  topics->add_option("--base-rotation", given.base_rotation, "The same: quaternion x y z w")->expected(4);
+      ->expected(3)
+      ->check(command::finite());
+  topics->add_option("--base-rotation", given.base_rotation, "The same: quaternion x y z w")
+      ->expected(4)
+      ->check(command::finite());
 }
 
 void declare_ros(CLI::App& app, RosOptions& ros, GivenOptions& given) {
@@ -63,24 +76,25 @@ void declare_ros(CLI::App& app, RosOptions& ros, GivenOptions& given) {
   group
       ->add_option("--tf-ahead-ms", ros.tf_ahead_ms,
                    "Stamp map -> odom so far ahead, that it holds until the next frame")
-      ->check(CLI::Range(0.0, 2000.0))
+      ->check(in_range(0.0, 2000.0))
       ->capture_default_str();
   group
       ->add_option("--tf-max-speed", ros.tf_max_speed_m_s,
                    "Corrections move map -> odom by this in m/s; 0: at once")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   group->add_option("--tf-max-turn", ros.tf_max_turn_deg_s, "The same in degrees per second")
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(in_range(0.0, 3600.0))
       ->capture_default_str();
 }
 
 void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
   auto& c = options.client;
   app.set_version_flag("--version", LILOC_VERSION);
-  app.set_config("--config", "", "Read options from this file (TOML: name = value)");
-  app.add_option("--id", c.id, "Name of the device: its topics are rt/<id>/...")->required();
-  app.add_option("--domain", c.domain, "DDS domain, 0..230")->check(CLI::Range(0, 230))->capture_default_str();
+  app.add_option("--id", c.id, "Name of the device: its topics are rt/<id>/...")
+      ->required()
+      ->check(command::an_id());
+  app.add_option("--domain", c.domain, "DDS domain")->check(in_range(0, 230))->capture_default_str();
   app.add_option("--interface", c.network_interface, "Network interface: name, address or auto")
       ->capture_default_str();
   app.add_option("--peer", c.peers, "Host of the server, and of its standby; default: this one");
@@ -90,47 +104,49 @@ void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
 
   auto* method = app.add_option_group("localization");
   method->add_option("--interval-ms", c.interval_ms, "Upper bound between global registrations")
-      ->check(CLI::Range(50, 60'000))
+      ->check(in_range(50, 60'000))
       ->capture_default_str();
   method
       ->add_option(
           "--searching-interval-ms", c.searching_interval_ms,
           "Lower bound while nothing is verified: an answer brings the next request forward; 0: a quarter "
           "of --interval-ms")
-      ->check(CLI::Range(0, 60'000))
+      ->check(in_range(0, 60'000))
       ->capture_default_str();
   method->add_option("--lost-sd-m", c.lost_sd_m, "Standard deviation of the pose beyond which it is lost")
-      ->check(CLI::Range(0.01, 100.0))
+      ->check(in_range(0.01, 100.0))
       ->capture_default_str();
   method->add_option("--lost-sd-deg", c.lost_sd_deg, "The same in degrees")
-      ->check(CLI::Range(0.1, 180.0))
+      ->check(in_range(0.1, 180.0))
       ->capture_default_str();
   method->add_option("--reply-timeout-ms", c.reply_timeout_ms, "A request older than so counts as unanswered")
-      ->check(CLI::Range(100, 600'000))
+      ->check(in_range(100, 600'000))
       ->capture_default_str();
   method->add_option("--voxel", c.voxel_size_m, "Voxel size of the cloud that is sent, m")
+      ->check(in_range(0.01, 0.5))
       ->capture_default_str();
   method->add_option("--local", given.local, "Local registration: cloud, inertial or dead-reckoning")
+      ->check(command::one_of({"cloud", "inertial", "dead-reckoning"}))
       ->capture_default_str();
   method
       ->add_option("--cpu-share", c.cpu_share,
                    "Of one core for the registration; frames are left out to keep it")
-      ->check(CLI::Range(0.02, 1.0))
+      ->check(in_range(0.02, 1.0))
       ->capture_default_str();
   method->add_flag_callback(
       "--no-submap", [&c] { c.submap = false; }, "Send the frame alone, without what stands around");
   method
       ->add_option("--request-bytes", c.request_bytes,
                    "Most, of a request's clouds: the surroundings give way first, then the frame is thinned")
-      ->check(CLI::Range(2000, 60'000))
+      ->check(in_range(2000, 60'000))
       ->capture_default_str();
   method->add_flag("--cold", c.cold, "Each request is answered on its own");
-  method->add_option("--seed", c.seed, "Of all randomness")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  method->add_option("--seed", c.seed, "Of all randomness")->check(command::any_seed())->capture_default_str();
 
   app.add_option("--trace", c.trace_folder, "Write online.tum, trajectory.tum, spots.csv and local.csv here");
-  app.add_option("--log-level", given.log_level, "debug, info, warning or error")->capture_default_str();
+  app.add_option("--log-level", given.log_level, "debug, info, warning or error")
+      ->check(command::one_of({"debug", "info", "warning", "error"}))
+      ->capture_default_str();
 }
 
 client::Pose to_public(const Pose& T) {
@@ -150,15 +166,12 @@ Result<DaemonOptions> parse_arguments(int argc, const char* const* argv, int& ex
       "odometry that others keep.",
       "liloc-client");
   declare(app, options, given);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    exit_code = app.exit(error) == 0 ? 0 : 2;  // prints the help, or what was wrong
-    return fail("");                           // CLI11 has said it
-  }
+  command::ProgramOptions program(app);
+  if (const Status parsed = program.parse(argc, argv, exit_code); !parsed)
+    return tl::unexpected(parsed.error());
   if (const Status ok = settle(given, options); !ok) {
     exit_code = 2;
-    return tl::unexpected(ok.error());
+    return tl::unexpected(program.located(ok.error()));
   }
   return options;
 }
@@ -172,7 +185,7 @@ Status read_device_file(DaemonOptions& options) {
   options.client.camera = {c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.depth_scale_m};
   options.client.still_seconds = device->still_seconds;
   if (device->T_imu_sensor) options.client.T_imu_sensor = to_public(*device->T_imu_sensor);
-  return {};
+  return check_imu(options);
 }
 
 }  // namespace liloc

@@ -13,6 +13,7 @@ import sys
 NEEDS = {
     "idl": [],
     "common/base": [],
+    "common/command": ["common/base"],
     "common/geometry": ["common/base"],
     "common/protocol": ["common/geometry"],
     "common/registration": ["common/geometry"],
@@ -25,10 +26,11 @@ NEEDS = {
     "server/ingest": ["common/wire", "server/global_cloud"],
     "server/service": ["server/localization", "common/wire"],
     "server/web": ["server/service"],
-    "server/app": ["server/service", "server/ingest", "server/localization", "server/web", "common/recording"],
+    "server/app": ["server/service", "server/ingest", "server/localization", "server/web", "common/recording",
+                   "common/command"],
     "client/include": ["common/base"],
     "client/src": ["client/include", "common/wire", "common/registration", "common/codec", "common/protocol"],
-    "client/app": ["client/src", "common/recording"],
+    "client/app": ["client/src", "common/recording", "common/command"],
     "client/python": ["client/src"],
     # The tools and trials see both sides.
     "proto-tests": ["server/app", "client/app", "proto-tests", "common/testing"],

@@ -36,8 +36,10 @@ struct DomainOptions {
   int receive_buffer_kb = 4096;  ///< lowered, with a warning, to what net.core.rmem_max allows
 };
 
-/// What Cyclone DDS is configured with. Errors: domain out of range, an interface or peer that is no plain
-/// name.
+/// Errors: domain out of range, an interface or peer that is no plain name.
+[[nodiscard]] Status check(const DomainOptions& options);
+
+/// What Cyclone DDS is configured with. Errors as of `check`.
 [[nodiscard]] Result<std::string> profile_xml(const DomainOptions& options);
 
 /// Movable; everything created on it must go first. Several in one process share the domain's first profile.

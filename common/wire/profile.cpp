@@ -77,7 +77,7 @@ int allowed_kb(int wanted_kb, const char* setting, const char* name) {
 
 }  // namespace
 
-Result<std::string> profile_xml(const DomainOptions& options) {
+Status check(const DomainOptions& options) {
   if (options.domain < 0 || options.domain > kMaxDomain)
     return fail("domain is {}, must be 0..{}", options.domain, kMaxDomain);
   if (!plain(options.interface))
@@ -86,7 +86,11 @@ Result<std::string> profile_xml(const DomainOptions& options) {
     if (!plain(peer)) return fail("peer is \"{}\", must be a host name or an address", peer);
   if (options.receive_buffer_kb < 64 || options.receive_buffer_kb > 1'048'576)
     return fail("receive_buffer_kb is {}, must be 64..1048576", options.receive_buffer_kb);
+  return {};
+}
 
+Result<std::string> profile_xml(const DomainOptions& options) {
+  if (const Status ok = check(options); !ok) return tl::unexpected(ok.error());
   const int receive_kb =
       allowed_kb(options.receive_buffer_kb, "/proc/sys/net/core/rmem_max", "net.core.rmem_max");
   const int send_kb = allowed_kb(1024, "/proc/sys/net/core/wmem_max", "net.core.wmem_max");

@@ -42,8 +42,8 @@ Status write_csv(const std::string& path, const std::vector<Row>& rows) {
         r.reply.latency_ms, r.cpu_ms, r.prepare_ms, r.nees);
     for (const Vector6d& numbers : {r.error, sd})
       out << fmt::format("{:.6f},", fmt::join(numbers.begin(), numbers.end(), ","));
-    out << fmt::format("{:.5f},{:.5f},{:.6f},{},\"{}\"\n", r.conflict_truth, r.map_conflict_truth, r.reply.confidence,
-                       name_of(r.reply.advice), r.reply.text);
+    out << fmt::format("{:.5f},{:.5f},{:.6f},{},\"{}\"\n", r.conflict_truth, r.map_conflict_truth,
+                       r.reply.confidence, name_of(r.reply.advice), r.reply.text);
   }
   if (!out.flush()) return fail("{}: cannot be written; name a file in a folder that exists", path);
   return {};

@@ -2,10 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/command/checks.hpp"
+#include "common/command/program_options.hpp"
 #include "server/app/site_state.hpp"
 
 namespace liloc {
 namespace {
+
+using command::in_range;
 
 struct Raw {
   std::string method = "liloc", verify, icp, state, log_level = "info";
@@ -23,7 +27,6 @@ void settle_standby(const CLI::App& app, const Raw& raw, ServerOptions& options)
 
 void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   app.set_version_flag("--version", LILOC_VERSION);
-  app.set_config("--config", "", "Read options from this file (TOML: name = value)");
   app.add_option("--site", options.site_file, "Site description: the ceiling LiDARs and where they hang")
       ->required();
   app.add_option(
@@ -31,56 +34,72 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       "File of what is learned of the site, or none; else beside the site: x/site.json, x/site.state.json");
 
   auto* network = app.add_option_group("network");
-  network->add_option("--domain", options.seat.domain, "DDS domain, 0..230")->capture_default_str();
+  network->add_option("--domain", options.seat.domain, "DDS domain")
+      ->check(in_range(0, 230))
+      ->capture_default_str();
   network->add_option("--interface", options.seat.interface, "Network interface: name, address or auto")
       ->capture_default_str();
   network
       ->add_option("--server-id", options.service.server_id,
                    "Name in replies and status; of two servers each needs its own")
+      ->check(command::an_id())
       ->capture_default_str();
   network->add_flag("--standby", raw.standby,
                     "Beside another server on this host; --server-id is then NAME-standby unless it is given");
 
   auto* method = app.add_option_group("localization");
   method->add_option("--voxel", options.localizer.voxel_size_m, "Voxel size of the global cloud, m")
-      ->check(CLI::Range(0.01, 0.5))
+      ->check(in_range(0.01, 0.5))
       ->capture_default_str();
   method
       ->add_option("--method", raw.method,
                    "liloc, or for comparison: paper, dynamic-noopt, dynamic-nover, static-noopt")
+      ->check(command::one_of({"liloc", "paper", "dynamic-noopt", "dynamic-nover", "static-noopt"}))
       ->capture_default_str();
-  method->add_option("--verify", raw.verify,
-                     "tracks, paper (three equality checks) or none; else the method's own");
   method
-      ->add_option(
-          "--risk", options.localizer.risk,
-          "Of all verified answers, the share that may be wrong (over 10 deg or 0.3 m)")
-      ->check(CLI::Range(1e-6, 0.1))
+      ->add_option("--verify", raw.verify,
+                   "tracks, paper (three equality checks) or none; else the method's own")
+      ->check(command::one_of({"tracks", "paper", "none"}));
+  method
+      ->add_option("--risk", options.localizer.risk,
+                   "Of all verified answers, the share that may be wrong (over 10 deg or 0.3 m)")
+      ->check(in_range(1e-6, 0.1))
       ->capture_default_str();
-  method->add_option("--icp", raw.icp,
-                     "Last refinement: plane, or point as in the paper; else the method's own");
+  method
+      ->add_option("--icp", raw.icp, "Last refinement: plane, or point as in the paper; else the method's own")
+      ->check(command::one_of({"plane", "point"}));
   method->add_option("--sampling", options.localizer.sampling, "Share of points with features that RANSAC uses")
-      ->check(CLI::Range(0.01, 1.0))
+      ->check(in_range(0.01, 1.0))
       ->capture_default_str();
   method->add_option("--seed", options.localizer.seed, "Seed of all randomness")
-      ->check(CLI::NonNegativeNumber)
+      ->check(command::any_seed())
       ->capture_default_str();
 
   auto* load = app.add_option_group("load");
-  load->add_option("--workers", options.service.workers, "Requests worked on at once")->capture_default_str();
+  load->add_option("--workers", options.service.workers, "Requests worked on at once")
+      ->check(in_range(1, 64))
+      ->capture_default_str();
   load->add_option("--threads", options.localizer.threads, "Threads of each request")
-      ->check(CLI::Range(1, 64))
+      ->check(in_range(1, 64))
       ->capture_default_str();
-  load->add_option("--queue", options.service.queue, "Requests that may wait")->capture_default_str();
+  load->add_option("--queue", options.service.queue, "Requests that may wait")
+      ->check(in_range(1, 4096))
+      ->capture_default_str();
   load->add_option("--max-rate", options.service.max_rate_hz, "Requests a second of one client")
+      ->check(in_range(0.001, 1e4))
       ->capture_default_str();
-  load->add_option("--max-clients", options.service.max_clients, "Clients served")->capture_default_str();
+  load->add_option("--max-clients", options.service.max_clients, "Clients served")
+      ->check(in_range(1, 4096))
+      ->capture_default_str();
   load->add_option("--hold-ms", raw.hold_ms, "Longest wait for the ceiling's next frame, ms")
+      ->check(in_range(0, 1000))
       ->capture_default_str();
 
-  app.add_option("--log-level", raw.log_level, "debug, info, warning or error")->capture_default_str();
+  app.add_option("--log-level", raw.log_level, "debug, info, warning or error")
+      ->check(command::one_of({"debug", "info", "warning", "error"}))
+      ->capture_default_str();
   app.add_option("--status-every", options.status_every_s, "Seconds between status lines; 0: none")
-      ->check(CLI::Range(0.0, 86'400.0))
+      ->check(in_range(0.0, 86'400.0))
       ->capture_default_str();
 }
 
@@ -98,20 +117,8 @@ Status set_variants(const Raw& raw, LocalizerOptions& localizer) {
   return localizer.validated();
 }
 
-}  // namespace
-
-Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
-  ServerOptions options;
-  Raw raw;
-  CLI::App app("Tells devices where they are, from the clouds of the LiDARs on the ceiling.", "liloc-server");
-  declare(app, options, raw);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    exit_code = app.exit(error) == 0 ? 0 : 2;
-    return fail("");  // CLI11 has said it
-  }
-  exit_code = 2;
+/// What was given as a word, and what must go together.
+Status take(const CLI::App& app, const Raw& raw, ServerOptions& options) {
   const auto method = method_from(raw.method);
   if (!method) return tl::unexpected(method.error());
   options.localizer.method = *method;
@@ -119,11 +126,26 @@ Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
   if (!level) return fail("--log-level: {}", level.error().message);
   options.log_level = *level;
   settle_standby(app, raw, options);
-  if (const auto set = set_variants(raw, options.localizer); !set) return tl::unexpected(set.error());
+  if (const auto set = set_variants(raw, options.localizer); !set) return fail("--{}", set.error().message);
   options.service.hold = std::chrono::milliseconds(raw.hold_ms);
   options.localizer.server_id = options.service.server_id;
   if (const auto valid = options.service.validated(); !valid) return tl::unexpected(valid.error());
-  if (const auto valid = wire::profile_xml(options.seat); !valid) return tl::unexpected(valid.error());
+  if (const auto valid = wire::profile_xml(options.seat); !valid) return fail("--{}", valid.error().message);
+  return {};
+}
+
+}  // namespace
+
+Result<ServerOptions> parse_arguments(int argc, char** argv, int& exit_code) {
+  ServerOptions options;
+  Raw raw;
+  CLI::App app("Tells devices where they are, from the clouds of the LiDARs on the ceiling.", "liloc-server");
+  declare(app, options, raw);
+  command::ProgramOptions program(app);
+  if (const Status parsed = program.parse(argc, argv, exit_code); !parsed)
+    return tl::unexpected(parsed.error());
+  exit_code = 2;
+  if (const Status set = take(app, raw, options); !set) return tl::unexpected(program.located(set.error()));
   exit_code = 0;
   return options;
 }

@@ -18,9 +18,10 @@ struct VerifyOptions {
   int research_every = 6;    ///< while following, every so many spots the whole room is searched
 };
 
-/// What an answer's confidence must be. Most verified answers are far surer than the least sure one, so that the
-/// share of wrong ones is a fifth of what the least sure one risks: on worlds that the model was not fitted on, of
-/// those told as at most 0.5 % wrong 0.09 % were by their own word, and none of 1434 was (CONFIDENCE.md).
+/// What an answer's confidence must be. Most verified answers are far surer than the least sure one, so that
+/// the share of wrong ones is a fifth of what the least sure one risks: on worlds that the model was not fitted
+/// on, of those told as at most 0.5 % wrong 0.09 % were by their own word, and none of 1434 was
+/// (CONFIDENCE.md).
 [[nodiscard]] inline double least_confidence(double risk) {
   return 1 - 5 * risk;
 }

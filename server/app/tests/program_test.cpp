@@ -1,11 +1,14 @@
 // liloc-server as a process: exit codes and the ordered stop.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -16,6 +19,7 @@ extern char** environ;
 namespace {
 
 using namespace std::chrono_literals;
+using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 pid_t spawn(std::vector<std::string> arguments) {
@@ -76,11 +80,79 @@ TEST(Program, StopsInOrderOnEitherSignal) {
   fs::remove(site);
 }
 
-TEST(Program, ReadsItsOptionsFromAFile) {
+struct Outcome {
+  int exit_code = -1;
+  std::string out;  ///< stdout and stderr
+};
+
+Outcome outcome_of(const std::string& arguments) {
+  Outcome outcome;
+  FILE* pipe = popen(("timeout 10 " + std::string(LILOC_SERVER) + " " + arguments + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.out.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
+  return outcome;
+}
+
+TEST(Program, AFileOfOptionsIsRefusedByLineAndKeyBeforeAnythingStarts) {
   const fs::path site = site_file();
   const fs::path config = site.string() + ".toml";
-  std::ofstream(config) << "site = \"" << site.string() << "\"\nworkers = 0\n";
-  EXPECT_EQ(exit_code(spawn({"--config", config.string()})), 2);
+  for (const auto& [line, says] : std::initializer_list<std::pair<std::string, const char*>>{
+           {"workers = 0", "line 2: workers: is '0'; give a whole number in 1..64"},
+           {"worker = 1", "line 2: there is no option worker; is it workers?"},
+           {"[network]\ndomain = 1", "line 2: a section"},
+           {"workers 1", "line 2: is not name = value"},
+           {"interface = \"aut", "line 2: a text has no closing quote; is the file whole?"},
+           {"voxel = nan", "line 2: voxel: is 'nan'; give a number in 0.01..0.5"},
+           {"max-rate = inf", "line 2: max-rate"},
+           {"hold-ms = -1", "line 2: hold-ms"},
+           {"domain = 231", "line 2: domain"},
+           {"interface = \"a b\"", "line 2: interface"},
+           {"server-id = \"a/b\"", "line 2: server-id: is 'a/b'"},
+           {"method = \"magic\"", "line 2: method: is 'magic'"},
+           {"log-level = \"" + std::string(4000, 'x') + "\"", "line 2: log-level: is 'xxx"},
+           {std::string(1000, 'k') + " = 1", "line 2: there is no option kkk"},
+           {"log-level = \"\x1b[2J\"", "line 2: holds a control character"}}) {
+    std::ofstream(config) << "site = \"" << site.string() << "\"\n" << line;
+    const Outcome outcome = outcome_of("--config " + config.string());
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+    EXPECT_THAT(outcome.out, HasSubstr(says));
+    EXPECT_THAT(outcome.out, HasSubstr(config.filename().string()));
+    EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos);
+    EXPECT_LT(outcome.out.size(), 400U);
+  }
+  fs::remove(config);
+  fs::remove(site);
+}
+
+TEST(Program, FlagsAreRefusedByTheirName) {
+  for (const auto& [arguments, says] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"", "--site is required; see liloc-server --help"},
+           {"--site s --voxel nan", "--voxel: is 'nan'"},
+           {"--site s --max-rate nan", "--max-rate"},
+           {"--site s --status-every nan", "--status-every"},
+           {"--site s --interface ''", "--interface"},
+           {"--site s --method paper --verify tracks", "--verify tracks"},
+           {"--site s --one --two", "not expected: '--one' '--two'"}}) {
+    const Outcome outcome = outcome_of(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+    EXPECT_THAT(outcome.out, HasSubstr(says));
+  }
+}
+
+TEST(Program, StartsFromAFileWithAByteOrderMark) {
+  const fs::path site = site_file();
+  const fs::path config = site.string() + ".toml";
+  std::ofstream(config) << "\xef\xbb\xbfsite = \"" << site.string() << "\"\r\ndomain = 143\r\n";
+  const pid_t pid = spawn({"--config", config.string()});
+  std::this_thread::sleep_for(600ms);
+  EXPECT_EQ(kill(pid, SIGTERM), 0);
+  EXPECT_EQ(exit_code(pid), 0);
   fs::remove(config);
   fs::remove(site);
 }

@@ -48,7 +48,8 @@ std::vector<std::string> names_of(const CLI::App& app) {
 std::string hint_for(const std::string& key, const std::vector<std::string>& names) {
   const auto nearest =
       std::ranges::min_element(names, {}, [&](const std::string& name) { return letters_between(key, name); });
-  if (nearest == names.end() || letters_between(key, *nearest) > 2) return "see --help for the names";
+  if (nearest == names.end() || 2 * letters_between(key, *nearest) >= key.size())
+    return "see --help for the names";
   return fmt::format("is it {}?", *nearest);
 }
 

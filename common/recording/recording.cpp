@@ -35,6 +35,9 @@ Result<std::vector<DepthFile>> list_depth(const fs::path& folder) {
     const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), stamp_ns);
     if (path.extension() != ".png" || error != std::errc() || end != stem.data() + stem.size() || stamp_ns < 0)
       return fail("{}: is not named <stamp_ns>.png; rename or remove it", path.string());
+    std::error_code unknown;
+    if (!fs::is_regular_file(path, unknown))  // a pipe of that name would be waited for
+      return fail("{}: is named like a frame but is no file; remove it", path.string());
     files.push_back({stamp_ns, path});
   }
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });

@@ -18,6 +18,8 @@ constexpr std::int64_t kNsInSecond = 1'000'000'000;
 /// Calls `row(line number, line)` for each line that is neither empty nor a comment; stops at the first error.
 template <class Row>
 Status for_each_row(std::string_view text, Row row) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets put it first
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t number = 0;
   while (!text.empty()) {
     const std::size_t end = text.find('\n');

@@ -136,6 +136,7 @@ class Lockstep {
       skip(frame.error().message);
       return {};
     }
+    ++facts.device_frames_used;
     if (auto status = device.trace.on_frame(*frame); !status) return status;
     if (auto request = device.engine.take_request()) {
       device.trace.on_request(*request);

@@ -1,5 +1,7 @@
 #include "proto-tests/replay/replay.hpp"
 
+#include <algorithm>
+
 #include "proto-tests/replay/live.hpp"
 #include "proto-tests/replay/lockstep.hpp"
 #include "proto-tests/replay/prepare.hpp"
@@ -9,6 +11,16 @@ namespace {
 
 tl::unexpected<ReplayError> ended(Error error, bool bad_input) {
   return tl::unexpected(ReplayError{std::move(error), bad_input});
+}
+
+/// A replay that could use no frame of any device has located nothing, however smoothly it ran.
+Status check_used(const Recording& recording, const RunFacts& run) {
+  if (run.device_frames == 0 || run.device_frames_used > 0) return {};
+  const std::string devices = (recording.root / "devices").string();
+  const auto first = std::ranges::find_if(
+      run.skipped, [&](const std::string& line) { return line.find(devices) != std::string::npos; });
+  return fail("{}: none of its {} device frames could be used; the first: {}", recording.root.string(),
+              run.device_frames, first == run.skipped.end() ? "unknown" : *first);
 }
 
 }  // namespace
@@ -35,6 +47,7 @@ tl::expected<Report, ReplayError> replay(const ReplayOptions& options, const Pro
   }
   if (auto status = write_report(options.out / "report.json", report); !status)
     return ended(status.error(), false);
+  if (const Status used = check_used(*recording, report.run); !used) return ended(used.error(), false);
   return report;
 }
 

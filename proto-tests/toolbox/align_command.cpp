@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/command/checks.hpp"
 #include "common/registration/align.hpp"
 #include "proto-tests/toolbox/cloud_file.hpp"
 #include "proto-tests/toolbox/command.hpp"
@@ -59,18 +60,18 @@ void add_align(CLI::App& app, int& exit_code) {
   command->add_option("SOURCE", arguments->source, "PCD or PLY file")->required();
   command->add_option("TARGET", arguments->target, "PCD or PLY file")->required();
   command->add_option("--voxel", arguments->options.voxel_size_m, "Voxel size in metres")
-      ->check(CLI::Range(0.005, 1.0))
+      ->check(command::in_range(0.005, 1.0))
       ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "Of all randomness")
-      ->check(CLI::NonNegativeNumber)
+      ->check(command::any_seed())
       ->capture_default_str();
   command->add_option("--threads", arguments->options.threads, "Threads to use")
-      ->check(CLI::Range(1, 256))
+      ->check(command::in_range(1, 256))
       ->capture_default_str();
   command
       ->add_option("--risk", arguments->options.risk,
                    "Trust a result whose probability of being off by over 0.2 m is at most this")
-      ->check(CLI::Range(1e-6, 0.999))
+      ->check(command::in_range(1e-6, 0.999))
       ->capture_default_str();
   command->add_flag("--gravity", arguments->options.gravity,
                     "Both clouds have z up: search x, y, z and yaw alone");

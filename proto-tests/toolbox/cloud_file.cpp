@@ -2,51 +2,80 @@
 
 #include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
-#include <pcl/io/ply_io.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <exception>
-#include <fstream>
-#include <set>
-#include <sstream>
+#include <optional>
 
-#include "common/geometry/pcl.hpp"
 #include "proto-tests/toolbox/pcd_header.hpp"
+#include "proto-tests/toolbox/ply_file.hpp"
+#include "proto-tests/toolbox/scalar.hpp"
 
 namespace liloc::toolbox {
 namespace {
 
-using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
-
-/// PCL makes room for as many points as a header claims before it looks for them, and takes an axis that is not
-/// there for zero.
-Status check_ply_header(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const auto size = std::filesystem::file_size(file);
-  std::string line, element;
-  std::set<std::string> of_vertex;
-  for (int i = 0; i < 200 && std::getline(in, line); ++i) {
-    std::istringstream words(line);
-    std::string keyword, name;
-    double count = 0;
-    words >> keyword;
-    if (keyword == "end_header") break;
-    if (keyword == "property" && element == "vertex")
-      while (words >> name) of_vertex.insert(name);
-    if (keyword != "element" || !(words >> element >> count)) continue;
-    if (count < 0 || count > 50e6 || count > static_cast<double>(size))
-      return fail("{}: claims {} {} in {} bytes; write it anew", file.string(), count, element, size);
+/// The type that PCL's message names; PCD has it in TYPE and SIZE, which have been checked.
+std::optional<Scalar> scalar_of(std::uint8_t datatype) {
+  switch (datatype) {
+    case pcl::PCLPointField::INT8:
+      return Scalar::i8;
+    case pcl::PCLPointField::UINT8:
+      return Scalar::u8;
+    case pcl::PCLPointField::INT16:
+      return Scalar::i16;
+    case pcl::PCLPointField::UINT16:
+      return Scalar::u16;
+    case pcl::PCLPointField::INT32:
+      return Scalar::i32;
+    case pcl::PCLPointField::UINT32:
+      return Scalar::u32;
+    case pcl::PCLPointField::FLOAT32:
+      return Scalar::f32;
+    case pcl::PCLPointField::FLOAT64:
+      return Scalar::f64;
+    default:
+      return std::nullopt;
   }
-  for (const char* axis : {"x", "y", "z"})
-    if (!of_vertex.contains(axis))
-      return fail("{}: its vertices have no {}; write it anew", file.string(), axis);
-  return {};
 }
 
-int load(const std::filesystem::path& file, std::string_view kind, PclCloud& points) {
-  return kind == ".ply" ? pcl::io::loadPLYFile(file.string(), points)
-                        : pcl::io::loadPCDFile(file.string(), points);
+/// x, y and z of every point as they are stored: PCL's own conversion takes an axis of another type for zero.
+Result<Cloud> points_of(const pcl::PCLPointCloud2& stored, const std::string& name) {
+  std::array<std::pair<Scalar, std::size_t>, 3> axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string wanted(1, "xyz"[axis]);
+    const auto field = std::ranges::find(stored.fields, wanted, &pcl::PCLPointField::name);
+    const auto type = field == stored.fields.end() ? std::nullopt : scalar_of(field->datatype);
+    if (!type || field->offset + bytes_of(*type) > stored.point_step)
+      return fail("{}: its field {} has a type that is not read; write it as F 4 or F 8", name, wanted);
+    axes.at(axis) = {*type, field->offset};
+  }
+  const std::size_t count = std::size_t{stored.width} * stored.height;
+  if (stored.data.size() < count * stored.point_step) return fail("{}: is cut short; write it anew", name);
+  Cloud cloud;
+  cloud.points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* point = reinterpret_cast<const char*>(stored.data.data()) + i * stored.point_step;
+    Eigen::Vector3d p;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[static_cast<int>(axis)] = read_scalar(axes.at(axis).first, point + axes.at(axis).second, false);
+    if (p.cast<float>().allFinite()) cloud.points.emplace_back(p.cast<float>());
+  }
+  return cloud;
+}
+
+Result<Cloud> read_pcd(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  if (auto status = check_pcd_header(file); !status) return tl::unexpected(status.error());
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // our own line says it
+  pcl::PCLPointCloud2 stored;
+  try {
+    if (pcl::io::loadPCDFile(name, stored) < 0) return fail("{}: is no sound pcd file; write it anew", name);
+  } catch (const std::exception& trouble) {
+    return fail("{}: is no sound pcd file ({}); write it anew", name, trouble.what());
+  }
+  return points_of(stored, name);
 }
 
 }  // namespace
@@ -60,19 +89,9 @@ Result<Cloud> read_cloud_file(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     return fail("{}: is no readable file; check the path", name);
-  if (auto status = kind == ".ply" ? check_ply_header(file) : check_pcd_header(file); !status)
-    return tl::unexpected(status.error());
-
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // our own line says it
-  PclCloud points;
-  try {
-    if (load(file, kind, points) < 0)
-      return fail("{}: is no sound {} file; write it anew", name, kind.substr(1));
-  } catch (const std::exception& trouble) {
-    return fail("{}: is no sound {} file ({}); write it anew", name, kind.substr(1), trouble.what());
-  }
-  Cloud cloud = from_pcl(points);
-  if (cloud.empty()) return fail("{}: has no finite point; is it the right file?", name);
+  auto cloud = kind == ".ply" ? read_ply(file) : read_pcd(file);
+  if (!cloud) return cloud;
+  if (cloud->empty()) return fail("{}: has no finite point; is it the right file?", name);
   return cloud;
 }
 

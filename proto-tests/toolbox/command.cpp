@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <string>
 
+#include "common/command/text.hpp"
+
 namespace liloc::toolbox {
 
 int complain(const Error& error, ExitCode code) {
-  std::string line = error.message;
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  fmt::print(stderr, "liloc: {}\n", line);
+  fmt::print(stderr, "liloc: {}\n", command::one_line(error.message));
   return code;
 }
 

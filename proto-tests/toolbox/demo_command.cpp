@@ -6,6 +6,7 @@
 #include <memory>
 #include <thread>
 
+#include "common/command/checks.hpp"
 #include "proto-tests/replay/fleet.hpp"
 #include "proto-tests/toolbox/command.hpp"
 #include "proto-tests/toolbox/device_table.hpp"
@@ -183,16 +184,16 @@ void add_demo(CLI::App& app, int& exit_code) {
       app.add_subcommand("demo", "A simulated site, the server and its clients, live in a table");
   command->add_flag("--keep", arguments->keep, "Go on until Ctrl-C");
   command->add_option("--seconds", arguments->seconds, "Length of the demo")
-      ->check(CLI::Range(5.0, 3600.0))
+      ->check(command::in_range(5.0, 3600.0))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Of the simulated site")
-      ->check(CLI::NonNegativeNumber)
+      ->check(command::any_seed())
       ->capture_default_str();
   command->add_option("--people", arguments->people, "Walking about")
-      ->check(CLI::Range(0, 30))
+      ->check(command::in_range(0, 30))
       ->capture_default_str();
   command->add_option("--devices", arguments->devices, "To be located")
-      ->check(CLI::Range(1, 16))
+      ->check(command::in_range(1, 16))
       ->capture_default_str();
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 
+#include "common/command/checks.hpp"
 #include "common/recording/recording.hpp"
 #include "proto-tests/toolbox/command.hpp"
 #include "proto-tests/toolbox/diagnosis.hpp"
@@ -100,7 +101,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "doctor", "Look for what keeps devices from being located: kernel, files, servers, ceiling LiDARs");
   command->add_option("--domain", arguments->seat.domain, "DDS domain")
-      ->check(CLI::Range(0, 230))
+      ->check(command::in_range(0, 230))
       ->capture_default_str();
   command->add_option("--interface", arguments->seat.interface, "Network interface: name, address or auto")
       ->capture_default_str();
@@ -108,7 +109,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
   command->add_option("--site", arguments->site_file, "site.json that the server should serve");
   command->add_option("--device", arguments->device_file, "device.json to check");
   command->add_option("--seconds", arguments->seconds, "Longest time to listen for a server")
-      ->check(CLI::Range(0.1, 600.0))
+      ->check(command::in_range(0.1, 600.0))
       ->capture_default_str();
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "common/command/text.hpp"
+
 namespace liloc::toolbox {
 namespace {
 
@@ -65,6 +67,21 @@ double bytes_of_point(const std::map<std::string, Words>& header, std::size_t fi
   return bytes;
 }
 
+/// The first field among x, y and z that is no single number of a type PCD knows, with that type; empty: none.
+std::string odd_axis(const std::map<std::string, Words>& header) {
+  constexpr std::array kTypes{"F4", "F8", "I1", "I2", "I4", "U1", "U2", "U4"};
+  const Words& fields = header.at("FIELDS");
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (fields[i] != "x" && fields[i] != "y" && fields[i] != "z") continue;
+    const std::string type = header.at("TYPE")[i] + header.at("SIZE")[i];
+    const bool one = !header.contains("COUNT") || whole(header.at("COUNT"), i, 1, 1) == 1;
+    if (!one || std::ranges::find(kTypes, type) == kTypes.end())
+      return fmt::format("{} is TYPE {} SIZE {}{}", fields[i], command::excerpt(header.at("TYPE")[i]),
+                         command::excerpt(header.at("SIZE")[i]), one ? "" : " with a COUNT");
+  }
+  return {};
+}
+
 /// Compressed data begin with their two lengths; PCL makes room for what the second says.
 bool unpacks_to(std::istream& in, double bytes, double left) {
   std::array<std::uint32_t, 2> lengths{};
@@ -89,6 +106,8 @@ Status check_pcd_header(const std::filesystem::path& file) {
       return fail("{}: its FIELDS have no {}; write it anew", name, axis);
   const double each = bytes_of_point(header, fields);
   if (each < 0) return fail("{}: a SIZE or COUNT is out of range; write it anew", name);
+  if (const std::string odd = odd_axis(header); !odd.empty())
+    return fail("{}: its field {}, which is not read; write it as F 4 or F 8", name, odd);
   const double width = whole(header.at("WIDTH"), 0, 0, kMostPoints),
                height = whole(header.at("HEIGHT"), 0, 0, kMostPoints);
   const double points =
@@ -97,6 +116,9 @@ Status check_pcd_header(const std::filesystem::path& file) {
     return fail("{}: WIDTH, HEIGHT and POINTS do not go together, or are over {}; write it anew", name,
                 kMostPoints);
   const std::string kind = header.at("DATA").empty() ? "" : header.at("DATA").front();
+  if (kind != "ascii" && kind != "binary" && kind != "binary_compressed")
+    return fail("{}: its DATA is '{}'; PCD has ascii, binary and binary_compressed", name,
+                command::excerpt(kind));
   const double left = static_cast<double>(std::filesystem::file_size(file)) - static_cast<double>(in.tellg());
   if (left < (kind == "binary" ? points * each : 0) || (kind == "ascii" && left < points) ||
       (kind == "binary_compressed" && points > 0 && !unpacks_to(in, points * each, left)))

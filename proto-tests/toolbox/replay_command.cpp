@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "common/command/checks.hpp"
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/replay/replay.hpp"
 #include "proto-tests/toolbox/command.hpp"
@@ -31,7 +32,7 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "Folder for the traces and report.json")->required();
   command->add_flag("--lockstep", options->lockstep, "One process, no DDS, deterministic, as fast as it can");
   command->add_option("--seed", options->seed, "Of all randomness")
-      ->check(CLI::NonNegativeNumber)
+      ->check(command::any_seed())
       ->capture_default_str();
   command->add_option("--interval-ms", options->interval_ms, "Longest time between global registrations")
       ->capture_default_str();
@@ -60,7 +61,7 @@ void add_replay(CLI::App& app, int& exit_code) {
       ->add_option(
           "--clock-ahead-ms", options->clock_ahead_ms,
           "The devices' clocks run so far ahead: what they sent is played that much earlier (not in lockstep)")
-      ->check(CLI::Range(-10'000.0, 10'000.0))
+      ->check(command::in_range(-10'000.0, 10'000.0))
       ->capture_default_str();
   command->add_flag_callback(
       "--no-submap", [options] { options->submap = false; },

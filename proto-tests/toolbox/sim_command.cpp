@@ -3,6 +3,7 @@
 #include <memory>
 #include <thread>
 
+#include "common/command/checks.hpp"
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/sim/write_recording.hpp"
 #include "proto-tests/toolbox/command.hpp"
@@ -149,12 +150,12 @@ void add_sim(CLI::App& app, int& exit_code) {
   command->add_option("OUT", arguments->out, "Folder of the new recording; not with --live");
   command->add_flag("--live", arguments->live, "Stream in real time until Ctrl-C or --seconds");
   command->add_option("--domain", arguments->domain, "DDS domain of --live")
-      ->check(CLI::Range(0, 230))
+      ->check(command::in_range(0, 230))
       ->capture_default_str();
   command->add_option("--describe", arguments->describe,
                       "With --live: folder for site.json and the devices' files");
   command->add_option("--seed", arguments->options.seed, "Everything follows from it")
-      ->check(CLI::NonNegativeNumber)
+      ->check(command::any_seed())
       ->capture_default_str();
   CLI::Option* seconds = command
                              ->add_option("--seconds", arguments->options.seconds,

@@ -101,6 +101,13 @@ TEST(Hostile, ImuTables) {
   };
   EXPECT_THAT(error_of("#head\n1,0,0,0,0,0,9.8\n"), testing::Eq("accepted"));
   EXPECT_THAT(error_of("#head\r\n1,0,0,0,0,0,9.8\r\n2,0,0,0,0,0,9.8"), testing::Eq("accepted"));
+  EXPECT_THAT(error_of("\xef\xbb\xbf#head\r\n1,0,0,0,0,0,9.8\r\n"), testing::Eq("accepted"));
+  EXPECT_THAT(error_of("\xef\xbb\xbf"
+                       "1,0,0,0,0,0,9.8\n"),
+              testing::Eq("accepted"));
+  EXPECT_THAT(error_of("1,0,0,0,0,0,9.8\n\xef\xbb\xbf"
+                       "2,0,0,0,0,0,9.8\n"),
+              HasSubstr("line 2 is not"));
   EXPECT_THAT(error_of("1,0,0,0,0,0,9.8\n1,0,0,0,0,0,9.8\n"),
               HasSubstr("line 2: timestamp_ns 1 does not rise"));
   EXPECT_THAT(error_of("1,0,0,0,0,0\n"), HasSubstr("line 1 is not"));

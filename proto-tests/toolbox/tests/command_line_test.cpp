@@ -1,6 +1,7 @@
 // The program as a user runs it: exit codes, one line per error, what lands where.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -60,8 +61,15 @@ TEST_F(CommandLine, EverySubcommandHasHelp) {
 }
 
 TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
-  expect_complaint(liloc(""), 2, "subcommand");
-  expect_complaint(liloc("dance"), 2, "dance");
+  for (const auto& [given, says] : {std::pair{"", "a command is missing"},
+                                    {"dance", "there is no command 'dance'"},
+                                    {"--seed 3 --fast dance", "'--seed' needs a command before it"}}) {
+    const Outcome outcome = liloc(given);
+    expect_complaint(outcome, 2, says);
+    EXPECT_THAT(outcome.out, HasSubstr("commands are demo, replay, sim, align, doctor; see liloc --help"));
+  }
+  expect_complaint(liloc("align a b --one --two"), 2, "not expected: '--one' '--two'");
+  expect_complaint(liloc("align a b --voxel nan"), 2, "--voxel: is 'nan'; give a number in 0.005..1");
   expect_complaint(liloc("replay"), 2, "REC");
   expect_complaint(liloc("sim"), 2, "OUT");
   expect_complaint(liloc("sim " + path("rec") + " --people many"), 2, "many");
@@ -132,6 +140,140 @@ TEST_F(CommandLine, CloudsThatCannotBeReadAreRefused) {
   expect_complaint(liloc("align " + path("flat.ply") + " " + path("flat.ply")), 2, "no z");
   ASSERT_TRUE(write_file(folder_.path() / "garbage.pcd", "FIELDS x y\nSIZE 4 4\nTYPE F F\nDATA ascii\n1 2\n"));
   expect_complaint(liloc("align " + path("garbage.pcd") + " " + path("garbage.pcd")), 2, "garbage.pcd");
+}
+
+/// Three walls of 2 m in 41 x 41 points each, in ascending order of the axes.
+std::vector<Eigen::Vector3d> corner_points() {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 41; ++i)
+    for (int j = 0; j < 41; ++j) {
+      const double a = 0.05 * i, b = 0.05 * j;
+      points.insert(points.end(), {{a, b, 0}, {a, 0, b + 0.01}, {0, a + 0.01, 1.5 * b}});
+    }
+  return points;
+}
+
+template <class T>
+std::string bytes_of(double value, bool big) {
+  const T typed = static_cast<T>(value);
+  std::string bytes(reinterpret_cast<const char*>(&typed), sizeof(T));
+  if (big) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+/// One PLY with a property and an element in front of what is wanted, as other programs write it.
+template <class T>
+std::string ply_of(const std::string& format, const std::string& type) {
+  const auto points = corner_points();
+  const bool ascii = format == "ascii", big = format == "binary_big_endian";
+  std::string text = fmt::format(
+      "ply\r\nformat {} 1.0\r\ncomment x\r\nobj_info num_cols 7\r\nelement camera 1\r\nproperty list uchar "
+      "short parts\r\nelement vertex {}\r\nproperty uchar red\r\nproperty {} x\r\nproperty {} y\r\nproperty {} "
+      "z\r\nelement face 0\r\nproperty list uchar int vertex_indices\r\nend_header\r\n",
+      format, points.size(), type, type, type);
+  text +=
+      ascii ? "2 5 6\n"
+            : bytes_of<std::uint8_t>(2, big) + bytes_of<std::int16_t>(5, big) + bytes_of<std::int16_t>(6, big);
+  for (const auto& p : points)
+    text += ascii ? fmt::format("9 {} {} {}\n", p.x(), p.y(), p.z())
+                  : bytes_of<std::uint8_t>(9, big) + bytes_of<T>(p.x(), big) + bytes_of<T>(p.y(), big) +
+                        bytes_of<T>(p.z(), big);
+  return text;
+}
+
+template <class T>
+std::string pcd_of(const std::string& data, char type) {
+  const auto points = corner_points();
+  std::string text = fmt::format(
+      "VERSION .7\nFIELDS rgb x y z\nSIZE 4 {0} {0} {0}\nTYPE U {1} {1} {1}\nCOUNT 1 1 1 1\nWIDTH {2}\nHEIGHT "
+      "1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {2}\nDATA {3}\n",
+      sizeof(T), type, points.size(), data);
+  for (const auto& p : points)
+    text += data == "ascii" ? fmt::format("9 {} {} {}\n", p.x(), p.y(), p.z())
+                            : bytes_of<std::uint32_t>(9, false) + bytes_of<T>(p.x(), false) +
+                                  bytes_of<T>(p.y(), false) + bytes_of<T>(p.z(), false);
+  return text;
+}
+
+TEST_F(CommandLine, CloudsOfEveryCoordinateTypeAreRead) {
+  const std::string reference = path("reference.ply");
+  ASSERT_TRUE(write_file(reference, ply_of<float>("ascii", "float")));
+  const auto aligned = [&](const std::string& file) {
+    const Outcome outcome = liloc("align --json " + file + " " + reference);
+    EXPECT_EQ(outcome.exit_code, 0) << file << outcome.out;
+    return nlohmann::json::parse(outcome.out, nullptr, false);
+  };
+  const auto wanted = aligned(reference);
+  EXPECT_GT(wanted["fitness"], 0.99);
+  const std::pair<const char*, std::string> files[] = {
+      {"a.ply", ply_of<double>("ascii", "double")},
+      {"b.ply", ply_of<double>("binary_little_endian", "double")},
+      {"c.ply", ply_of<double>("binary_big_endian", "float64")},
+      {"d.ply", ply_of<float>("binary_little_endian", "float32")},
+      {"e.ply", ply_of<float>("binary_big_endian", "float")},
+      {"a.pcd", pcd_of<double>("ascii", 'F')},
+      {"b.pcd", pcd_of<double>("binary", 'F')},
+      {"c.pcd", pcd_of<float>("binary", 'F')}};
+  for (const auto& [name, text] : files) {
+    ASSERT_TRUE(write_file(folder_.path() / name, text));
+    const auto got = aligned(path(name));
+    for (const char* field : {"T_target_source", "fitness", "rmse_m"})
+      EXPECT_EQ(got[field], wanted[field]) << name << " " << field;  // the same points: the same answer
+  }
+}
+
+TEST_F(CommandLine, CloudsThatCannotBeMeantAreRefusedByFieldAndType) {
+  const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\n";
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n";
+  for (const auto& [name, text, says] :
+       std::initializer_list<std::tuple<const char*, std::string, const char*>>{
+           {"a.pcd", pcd + "DATA foo\n1 2 3\n", "its DATA is 'foo'"},
+           {"b.pcd", "FIELDS x y z\nSIZE 4 8 4\nTYPE F U F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n1 2 3\n",
+            "its field y is TYPE U SIZE 8"},
+           {"c.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F Q\nWIDTH 1\nHEIGHT 1\nDATA ascii\n1 2 3\n",
+            "its field z is TYPE Q SIZE 4"},
+           {"d.ply", ply + "property float z\nproperty list uchar int a\nend_header\n1 2 3 0\n",
+            "have a list, a"},
+           {"e.ply", ply + "property list uchar float z\nend_header\n1 2 1 3\n", "have a list, z"},
+           {"f.ply", ply + "property quad z\nend_header\n1 2 3\n", "its property z has a type 'quad'"},
+           {"g.ply", ply + "property float z\nend_header\n1 2 x\n", "no sound vertex 1 of 1"},
+           {"h.ply", "ply\nformat utf 1.0\nend_header\n", "its format is 'utf'"},
+           {"i.ply",
+            "ply\nformat ascii 1.0\nelement face 1\nproperty list int int a\nelement vertex 1\n"
+            "property float x\nproperty float y\nproperty float z\nend_header\n2000000000 1\n1 2 3\n",
+            "ends within element face"},
+           {"j.ply", "\x1b[2J", "no PLY header"}}) {
+    ASSERT_TRUE(write_file(folder_.path() / name, text));
+    const Outcome outcome = liloc("align " + path(name) + " " + path(name));
+    expect_complaint(outcome, 2, says);
+    EXPECT_THAT(outcome.out, HasSubstr(name));
+  }
+}
+
+TEST_F(CommandLine, WhatOnlyHasTheNameOfAFrameIsNotWaitedFor) {
+  const fs::path rec = folder_.path() / "rec";
+  replay::write_small_recording(rec);
+  const fs::path odd = rec / "devices/device0/depth/1700000000900000000.png";
+  ASSERT_EQ(mkfifo(odd.c_str(), 0600), 0);
+  const std::string replay = "replay " + rec.string() + " --lockstep --out " + path("out");
+  expect_complaint(liloc(replay), 2, odd.filename().string());
+  fs::remove(odd);
+  fs::create_directory(odd);
+  expect_complaint(liloc(replay), 2, odd.filename().string());
+  fs::remove(odd);
+  EXPECT_EQ(liloc(replay).exit_code, 0);
+}
+
+TEST_F(CommandLine, ARecordingWithoutASoundDeviceFrameFails) {
+  const fs::path rec = folder_.path() / "rec";
+  replay::write_small_recording(rec);
+  for (const auto& frame : fs::directory_iterator(rec / "devices/device0/depth")) {
+    fs::resize_file(frame.path(), 60);
+    ASSERT_FALSE(fs::is_empty(frame.path()));
+  }
+  expect_complaint(liloc("replay " + rec.string() + " --lockstep --out " + path("out")), 1,
+                   "none of its 2 device frames could be used; the first: ");
 }
 
 TEST_F(CommandLine, CloudsThatAreTooThinAreNamedWithTheRemedy) {

@@ -6,6 +6,7 @@
 #include "client/src/match_check.hpp"
 #include "client/src/relocate.hpp"
 #include "common/base/log.hpp"
+#include "common/geometry/pose_estimate.hpp"
 
 namespace liloc {
 namespace {
@@ -15,7 +16,6 @@ constexpr double kReachM = 0.3, kReachSpeed = 2;  // m/s: nobody carries a devic
 constexpr double kGyroTrustRad = 0.2;             // the gyro cannot be off by more over a bridged stretch
 constexpr double kGuessedSdM = 0.02;              // of a pose that the scene showed along some axes only
 constexpr double kHeldSdRad = 0.0005, kHeldSdM = 0.001;  // of a standing device: StandingOptions::moved_m / 3
-constexpr double kMostSurprise = 22.5;                   // chi-square of six, one in a thousand
 constexpr int kProven = 3;  // frames that stood where a reference was taken, and that then tell it is left
 constexpr StampNs kReferAfter = from_ms(2000);  // somebody who passes covers the view for less
 constexpr double kLastingDoubt = 4;  // of variances: errors of the map last, and people are not in the model

@@ -24,5 +24,6 @@ struct PoseEstimate {
 
 /// Squared distance of the two over their covariances: 6 on average.
 [[nodiscard]] double surprise_of(const PoseEstimate& predicted, const PoseEstimate& seen);
+constexpr double kMostSurprise = 22.5;  ///< chi-square of six degrees of freedom, one in a thousand
 
 }  // namespace liloc

@@ -31,17 +31,17 @@ std::vector<UpPair> ups_to_try(const SpotProblem& problem) {
   if (problem.up_sensor) {
     const bool sure = !planes.empty() && planes.front().confidence > kSure;
     const bool agree = sure && planes.front().up.dot(*problem.up_sensor) >= std::cos(kContradicts_rad);
-    ups.push_back({*problem.up_sensor, problem.ups_map.front(), agree});
-    if (sure && !agree) ups.push_back({planes.front().up, problem.ups_map.front()});
+    ups.push_back({*problem.up_sensor, problem.up_map, agree});
+    if (sure && !agree) ups.push_back({planes.front().up, problem.up_map});
     return ups;
   }
-  if (!planes.empty()) ups.push_back({planes.front().up, problem.ups_map.front()});
+  if (!planes.empty()) ups.push_back({planes.front().up, problem.up_map});
   return ups;
 }
 
 std::vector<Candidate> GravityProposer::propose(const SpotProblem& problem) const {
   if (!up_ && !problem.up_sensor) return {};
-  const UpPair up = up_ ? *up_ : UpPair{*problem.up_sensor, problem.ups_map.front()};
+  const UpPair up = up_ ? *up_ : UpPair{*problem.up_sensor, problem.up_map};
   GravitySearchOptions options;
   options.threads = problem.threads;
   options.up_map = up.map;

@@ -31,8 +31,7 @@ struct SpotProblem {
   const Target& target;
   const Query& query;
   std::optional<Eigen::Vector3d> up_sensor = std::nullopt;  ///< against gravity, as the device says
-  std::vector<Eigen::Vector3d> ups_map{
-      Eigen::Vector3d::UnitZ()};  ///< what may be up in the map, likeliest first
+  Eigen::Vector3d up_map = Eigen::Vector3d::UnitZ();
   std::function<const Described&()> target_described = {}, query_described = {};
   std::uint64_t seed = 1;
   int threads = 1;

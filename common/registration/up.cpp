@@ -130,19 +130,18 @@ std::vector<UpHypothesis> find_up(const Cloud& cloud, const UpOptions& options) 
   return found;
 }
 
-std::vector<Eigen::Vector3d> ups_of_map(const Cloud& cloud_map, const Eigen::Vector3d& expected) {
+Eigen::Vector3d up_of_map(const Cloud& cloud_map, const Eigen::Vector3d& expected) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   const auto found = find_up(cloud_map, {expected, 1});
-  if (found.empty()) return {z};
+  if (found.empty()) return z;
   const Eigen::Vector3d& best = found.front().up;
-  if (best.dot(z) > std::cos(kSameAxis_rad / 2)) return {z};
+  if (best.dot(z) > std::cos(kSameAxis_rad / 2)) return z;
   const Normals normals = evenly_picked(cloud_map);
   const auto structure = [&](const Eigen::Vector3d& up) {
     const Shares s = shares_of(normals, up);
     return s.up + s.down + s.across;
   };
-  if (structure(best) > 0.5 && structure(z) < 0.6 * structure(best)) return {best};
-  return {z, best};
+  return structure(best) > 0.5 && structure(z) < 0.6 * structure(best) ? best : z;
 }
 
 }  // namespace liloc

@@ -23,9 +23,8 @@ struct UpOptions {
 /// eigenvector that its normals agree on. Empty when there are no normals or nothing is plane. Pure.
 [[nodiscard]] std::vector<UpHypothesis> find_up(const Cloud& cloud, const UpOptions& options = {});
 
-/// What may be up in a map: z, unless its planes lie across it (a map whose frame is not level), and what the
-/// ceiling sensors take for up, where that is another direction. One or two, likeliest first. `expected`: of
-/// the ceiling sensors, map frame.
-[[nodiscard]] std::vector<Eigen::Vector3d> ups_of_map(const Cloud& cloud_map, const Eigen::Vector3d& expected);
+/// What is up in a map: z, unless its planes lie across it (a map whose frame is not level); then the direction
+/// of planes that is nearest to what the ceiling sensors take for up. `expected`: of them, map frame.
+[[nodiscard]] Eigen::Vector3d up_of_map(const Cloud& cloud_map, const Eigen::Vector3d& expected);
 
 }  // namespace liloc

@@ -18,18 +18,18 @@ try:
 except ImportError:
     sys.exit("fit_confidence.py: needs scipy; apt-get install python3-scipy")
 
-CLUTTER = ["constant", "any", "log_agreeing", "share", "support", "contradiction", "excess", "log_bits", "misfit", "log_sd"]
-TWIN = ["constant", "share", "support", "contradiction", "excess", "log_bits", "misfit", "alike"]
-RIVAL = ["constant", "log_agreeing", "support", "contradiction", "excess", "log_bits", "misfit"]
+CLUTTER = ["constant", "log_agreeing", "contradiction", "excess", "log_bits", "log_sd"]
+TWIN = ["constant", "share", "support", "contradiction", "log_bits", "alike"]
+RIVAL = ["constant", "log_agreeing", "contradiction", "excess", "log_bits", "misfit"]
 SIGN = {"constant": 0, "contradiction": -1, "excess": -1, "misfit": -1, "log_sd": -1, "alike": -1}  # others: 1
 RIVAL_BITS, FEW_BITS = 0.4, 3.0  # as in confidence.cpp
-START = {"constant": 0, "any": 1, "log_agreeing": 1, "share": .5, "support": .3, "contradiction": -.3, "log_bits": 1, "misfit": -.3, "log_sd": -.5}
+START = {"constant": 0, "log_agreeing": 1, "share": .5, "support": .3, "contradiction": -.3, "log_bits": 1, "misfit": -.3, "log_sd": -.5}
 BINS = [0, .1, .3, .5, .75, .9, .95, .99, .995, .999, .9995, 1]
 
 
 def place_of(row):
     place = {k: float(row[k]) for k in ("agreeing", "searches", "support", "contradiction", "excess", "misfit", "bits", "sd_m")}
-    place.update(right=row["right"] == "1", any=float(place["agreeing"] >= 1), constant=1.0,
+    place.update(right=row["right"] == "1", constant=1.0,
                  log_agreeing=np.log1p(place["agreeing"]), share=place["agreeing"] / max(place["searches"], 1),
                  log_bits=np.log(place["bits"] + FEW_BITS), log_sd=np.log(np.clip(place["sd_m"], .002, .5) / .01))
     return place

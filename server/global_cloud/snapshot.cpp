@@ -86,20 +86,20 @@ const Described& StitchedRoom::described() const {
   return described_;
 }
 
-const std::vector<Eigen::Vector3d>& StitchedRoom::ups_map() const {
-  std::call_once(ups_once_, [this] {
+const Eigen::Vector3d& StitchedRoom::up_map() const {
+  std::call_once(up_once_, [this] {
     Eigen::Vector3d expected = Eigen::Vector3d::Zero();  // hung upright, looking level to straight down
     for (const auto& part : parts_)
       expected += part->lidar().T_map_sensor.linear() * Eigen::Vector3d(0, -1, -0.5);
-    ups_map_ = ups_of_map(surfaces()->coarse, expected);
+    up_map_ = up_of_map(surfaces()->coarse, expected);
   });
-  return ups_map_;
+  return up_map_;
 }
 
 void StitchedRoom::prepare(bool describe) const {
   if (surfaces()->cloud.empty()) return;
   (void)surfaces()->field_fine();
-  (void)ups_map();
+  (void)up_map();
   if (describe) (void)described();
 }
 

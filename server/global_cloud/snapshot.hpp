@@ -81,8 +81,8 @@ class StitchedRoom {
   /// Whether a request has asked for descriptors.
   [[nodiscard]] bool descriptors_asked() const { return descriptors_asked_; }
   void note_descriptors_asked() const { descriptors_asked_ = true; }
-  /// What may be up in the map frame, likeliest first: z alone in a site that is set up as it should be.
-  [[nodiscard]] const std::vector<Eigen::Vector3d>& ups_map() const;
+  /// What is up in the map frame: z in a site that is set up as it should be.
+  [[nodiscard]] const Eigen::Vector3d& up_map() const;
   /// Builds all of it now, descriptors if `describe`, so that no request has to. Costs nothing the second time.
   void prepare(bool describe) const;
 
@@ -90,8 +90,8 @@ class StitchedRoom {
   const Parts parts_;
   const SnapshotOptions options_;
   const std::weak_ptr<const StitchedRoom> before_;  ///< weak: rooms must not keep all that came before them
-  mutable std::once_flag surfaces_once_, described_once_, ups_once_;
-  mutable std::vector<Eigen::Vector3d> ups_map_;
+  mutable std::once_flag surfaces_once_, described_once_, up_once_;
+  mutable Eigen::Vector3d up_map_ = Eigen::Vector3d::UnitZ();
   mutable std::shared_ptr<const Surfaces> surfaces_;
   mutable Described described_;
   mutable std::atomic<bool> has_surfaces_ = false, has_descriptors_ = false, descriptors_asked_ = false;

@@ -1,6 +1,7 @@
 #pragma once
 // Where an answer is not verified: what would help.
 #include "common/protocol/spot.hpp"
+#include "server/localization/following.hpp"
 #include "server/localization/verification.hpp"
 
 namespace liloc {
@@ -10,7 +11,9 @@ struct Advised {
   std::string text;  ///< for people
 };
 
-/// By what weighs most against the best place. `judgement`: of it, at the newest spot.
+/// After a search, by what weighs most against the best place. `judgement`: of it, at the newest spot.
 [[nodiscard]] Advised advice_for(const Evidence& evidence, const Judgement& judgement);
+/// For a followed pose that is in doubt, while nobody has searched the room.
+[[nodiscard]] Advised advice_for(const Followed& followed, const Judgement& judgement);
 
 }  // namespace liloc

@@ -20,14 +20,9 @@ double log_bits(const PlaceEvidence& place) {
   return std::log(place.bits + kFewBits);
 }
 
-double share(const PlaceEvidence& place) {
-  return place.agreeing / std::max(place.searches, 1.0);
-}
-
 double clutter_of(const PlaceEvidence& p, const ConfidenceModel::Clutter& c) {
-  return c.constant + c.any * (p.agreeing >= 1 ? 1 : 0) + c.log_agreeing * std::log1p(p.agreeing) +
-         c.share * share(p) + c.support * p.looks.support + c.contradiction * p.looks.contradiction +
-         c.excess * p.looks.excess + c.log_bits * log_bits(p) + c.misfit * p.looks.misfit +
+  return c.constant + c.log_agreeing * std::log1p(p.agreeing) + c.contradiction * p.looks.contradiction +
+         c.excess * p.looks.excess + c.log_bits * log_bits(p) +
          c.log_sd * std::log(std::clamp(p.sd_m, kLeastSd_m, kMostSd_m) / 0.01);
 }
 
@@ -42,14 +37,12 @@ double alike(const std::vector<PlaceEvidence>& places) {
 
 double twin_of(const std::vector<PlaceEvidence>& places, const ConfidenceModel::Twin& c) {
   const PlaceEvidence& p = places.front();
-  return c.constant + c.share * share(p) + c.support * p.looks.support +
-         c.contradiction * p.looks.contradiction + c.excess * p.looks.excess + c.log_bits * log_bits(p) +
-         c.misfit * p.looks.misfit + c.alike * alike(places);
+  return c.constant + c.share * p.agreeing / std::max(p.searches, 1.0) + c.support * p.looks.support +
+         c.contradiction * p.looks.contradiction + c.log_bits * log_bits(p) + c.alike * alike(places);
 }
 
 double rather_than(const PlaceEvidence& p, const PlaceEvidence& rival, const ConfidenceModel::Rival& c) {
   return c.constant + c.log_agreeing * (std::log1p(p.agreeing) - std::log1p(rival.agreeing)) +
-         c.support * (p.looks.support - rival.looks.support) +
          c.contradiction * (p.looks.contradiction - rival.looks.contradiction) +
          c.excess * (p.looks.excess - rival.looks.excess) + c.log_bits * (log_bits(p) - log_bits(rival)) +
          c.misfit * (p.looks.misfit - rival.looks.misfit);
@@ -59,26 +52,19 @@ double rather_than(const PlaceEvidence& p, const PlaceEvidence& rival, const Con
 
 const ConfidenceModel& fitted_confidence() {
   static const ConfidenceModel model{.clutter = {.constant = -6.17,
-                                                 .any = 0.00,
                                                  .log_agreeing = 2.05,
-                                                 .share = 0.00,
-                                                 .support = 0.00,
                                                  .contradiction = -0.51,
                                                  .excess = -0.29,
                                                  .log_bits = 2.74,
-                                                 .misfit = 0.00,
                                                  .log_sd = -1.03},
                                      .twin = {.constant = 5.46,
                                               .share = 1.77,
                                               .support = 2.75,
                                               .contradiction = -2.35,
-                                              .excess = 0.00,
                                               .log_bits = 0.84,
-                                              .misfit = 0.00,
                                               .alike = -2.52},
                                      .rival = {.constant = -1.64,
                                                .log_agreeing = 1.40,
-                                               .support = 0.00,
                                                .contradiction = -1.70,
                                                .excess = -12.88,
                                                .log_bits = 4.75,

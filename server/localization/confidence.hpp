@@ -33,13 +33,13 @@ struct PlaceEvidence {
 /// from what and how well they hold elsewhere.
 struct ConfidenceModel {
   struct Clutter {
-    double constant, any, log_agreeing, share, support, contradiction, excess, log_bits, misfit, log_sd;
+    double constant, log_agreeing, contradiction, excess, log_bits, log_sd;
   } clutter;
   struct Twin {
-    double constant, share, support, contradiction, excess, log_bits, misfit, alike;
+    double constant, share, support, contradiction, log_bits, alike;
   } twin;
   struct Rival {
-    double constant, log_agreeing, support, contradiction, excess, log_bits, misfit;
+    double constant, log_agreeing, contradiction, excess, log_bits, misfit;
   } rival;
 };
 [[nodiscard]] const ConfidenceModel& fitted_confidence();

@@ -22,7 +22,7 @@ constexpr double kGravityOff_rad = radians(5.0);
 void note_gravity(const SpotRequest& request, const Snapshot& snapshot, SpotReply* reply) {
   if (!reply->verified() || !request.up_sensor) return;
   const Eigen::Vector3d up_map = reply->T_map_sensor->linear() * *request.up_sensor;
-  const double off_rad = std::acos(std::clamp(up_map.dot(snapshot.room()->ups_map().front()), -1.0, 1.0));
+  const double off_rad = std::acos(std::clamp(up_map.dot(snapshot.room()->up_map()), -1.0, 1.0));
   if (off_rad > kGravityOff_rad)
     reply->text += fmt::format("; the device's gravity is off by {:.0f} deg and was dropped", degrees(off_rad));
 }

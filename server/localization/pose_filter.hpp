@@ -4,8 +4,6 @@
 
 namespace liloc {
 
-constexpr double kMostSurprise = 22.5;  ///< one in a thousand
-
 /// Both weighed by their covariances. Where they contradict each other beyond `surprise_limit`, the prediction
 /// was surer of itself than it should have been: it is widened until it no longer does.
 [[nodiscard]] PoseEstimate fused(PoseEstimate predicted, const PoseEstimate& seen,

@@ -210,7 +210,9 @@ void Session::answer_following(const SpotRequest& request, const std::shared_ptr
   if (++segment_->spots_since_search >= verify_.research_every || weak_in_a_row >= 2)
     search_beside(spot, here, reply);
   if (reply->verified()) return;
-  advise(advice_for(evidence_, here.judgement), reply);
+  const bool searched = segment_->spots_since_search == 0;
+  advise(searched ? advice_for(evidence_, here.judgement) : advice_for(*segment_->followed, here.judgement),
+         reply);
   if (segment_->followed->log_odds < 0) segment_->followed.reset();  // likelier wrong than right
 }
 

@@ -90,7 +90,7 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
     spot->middle_sensor_ += p.cast<double>() / static_cast<double>(spot->query_.sparse.size());
   Spot* raw = spot.get();
   spot->problem_.emplace(SpotProblem{
-      spot->snapshot_->target(), spot->query_, request.up_sensor, spot->snapshot_->room()->ups_map(),
+      spot->snapshot_->target(), spot->query_, request.up_sensor, spot->snapshot_->room()->up_map(),
       [raw]() -> const Described& { return raw->snapshot_->described(); },
       [raw, options]() -> const Described& {
         std::call_once(raw->described_once_, [&] {

@@ -1,14 +1,14 @@
 // liloc-client as a process: what is wrong with its options is one line and exit code 2, before anything
 // starts.
+#include "common/testing/program.hpp"
+
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
+namespace liloc {
 namespace {
 
 using testing::AllOf;
@@ -16,21 +16,8 @@ using testing::HasSubstr;
 using testing::Not;
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out;  ///< stdout and stderr
-};
-
 Outcome client(const std::string& arguments) {
-  Outcome outcome;
-  FILE* pipe = popen(("timeout 10 " + std::string(LILOC_CLIENT) + " " + arguments + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
-    outcome.out.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
-  return outcome;
+  return run_program(LILOC_CLIENT, arguments);
 }
 
 void expect_refused(const Outcome& outcome, const std::string& part) {
@@ -86,3 +73,4 @@ TEST(ClientProgram, AFileIsRefusedByLineAndKey) {
 }
 
 }  // namespace
+}  // namespace liloc

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "common/recording/files.hpp"
+#include "common/testing/program.hpp"
 #include "common/wire/status.hpp"
 #include "proto-tests/replay/tests/small_recording.hpp"
 #include "proto-tests/replay/tests/temp_folder.hpp"
@@ -21,21 +22,8 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out;  ///< stdout and stderr
-};
-
 Outcome liloc(const std::string& arguments) {
-  Outcome outcome;
-  FILE* pipe = popen((std::string(LILOC_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
-    outcome.out.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
-  return outcome;
+  return run_program(LILOC_PROGRAM, arguments);
 }
 
 void expect_complaint(const Outcome& outcome, int exit_code, const std::string& part) {

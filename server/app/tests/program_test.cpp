@@ -1,14 +1,14 @@
 // liloc-server as a process: exit codes and the ordered stop.
+#include "common/testing/program.hpp"
+
 #include <gmock/gmock.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -16,6 +16,7 @@
 
 extern char** environ;
 
+namespace liloc {
 namespace {
 
 using namespace std::chrono_literals;
@@ -80,21 +81,8 @@ TEST(Program, StopsInOrderOnEitherSignal) {
   fs::remove(site);
 }
 
-struct Outcome {
-  int exit_code = -1;
-  std::string out;  ///< stdout and stderr
-};
-
 Outcome outcome_of(const std::string& arguments) {
-  Outcome outcome;
-  FILE* pipe = popen(("timeout 10 " + std::string(LILOC_SERVER) + " " + arguments + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
-    outcome.out.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
-  return outcome;
+  return run_program(LILOC_SERVER, arguments);
 }
 
 TEST(Program, AFileOfOptionsIsRefusedByLineAndKeyBeforeAnythingStarts) {
@@ -183,3 +171,4 @@ TEST(Program, AStandbySitsBesideAServerOnOneHost) {
 }
 
 }  // namespace
+}  // namespace liloc

@@ -19,7 +19,7 @@ Evidence one_place(double searches, const Judgement& judgement = kClean) {
 }
 
 TEST(Advice, NothingThatFitsAsksToMoveOn) {
-  EXPECT_EQ(advice_for({}, {}).advice, Advice::move_on);
+  EXPECT_EQ(advice_for(Evidence{}, {}).advice, Advice::move_on);
 }
 
 TEST(Advice, WhatTheCeilingDoesNotSeeAsksToTurnAndInTheEndForCoverage) {
@@ -47,6 +47,16 @@ TEST(Advice, SomebodyCloseByAndBareWallsAndFewSpotsAreTold) {
   loose.places.front().sd_m = 0.2;
   EXPECT_EQ(advice_for(loose, kClean).advice, Advice::turn_around);
   EXPECT_EQ(advice_for(one_place(1), kClean).advice, Advice::wait);
+}
+
+TEST(Advice, AFollowedPoseInDoubtIsToldByWhatTheSpotShows) {
+  Followed followed;
+  followed.estimate.covariance = 1e-5 * Matrix6d::Identity();
+  EXPECT_EQ(advice_for(followed, kClean).advice, Advice::wait);
+  EXPECT_EQ(advice_for(followed, {0.04, 0.0, 1.0, 0.0, 0.1, 0}).advice, Advice::turn_around);
+  EXPECT_EQ(advice_for(followed, {0.7, 0.05, 1.0, 0.0, 0.6, 0}).advice, Advice::clear_view);
+  followed.estimate.covariance = 0.04 * Matrix6d::Identity();
+  EXPECT_EQ(advice_for(followed, kClean).advice, Advice::turn_around);
 }
 
 }  // namespace

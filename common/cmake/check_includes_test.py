@@ -36,13 +36,13 @@ class OneWayRule(unittest.TestCase):
         self.assertIn("common/geometry/pose.cpp:2: common/geometry includes common/wire", found[0])
 
     def test_server_and_client_meet_only_in_common(self):
-        self.assertEqual(1, len(self.problems({"client/src/a.cpp": '#include "server/service/b.hpp"\n'})))
-        self.assertEqual(1, len(self.problems({"server/app/a.cpp": '#include "client/src/engine.hpp"\n'})))
+        self.assertEqual(1, len(self.problems({"client/session/a.cpp": '#include "server/service/b.hpp"\n'})))
+        self.assertEqual(1, len(self.problems({"server/app/a.cpp": '#include "client/engine/engine.hpp"\n'})))
 
     def test_only_tests_use_the_testing_room(self):
         line = '#include "common/testing/scene.hpp"\n'
-        self.assertEqual([], self.problems({"common/registration/tests/icp_test.cpp": line}))
-        self.assertEqual(1, len(self.problems({"common/registration/icp.cpp": line})))
+        self.assertEqual([], self.problems({"common/registration/scan/tests/icp_test.cpp": line}))
+        self.assertEqual(1, len(self.problems({"common/registration/scan/icp.cpp": line})))
 
     def test_the_transport_stays_in_its_room(self):
         self.assertEqual([], self.problems({"common/wire/reader.cpp": "#include <dds/dds.h>\n"}))

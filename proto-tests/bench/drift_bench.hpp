@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "client/src/engine.hpp"
+#include "client/engine/engine.hpp"
 #include "common/recording/recording.hpp"
 
 namespace liloc::bench {

@@ -12,7 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <deque>
 
-#include "client/src/image_thinning.hpp"
+#include "client/odometry/image_thinning.hpp"
 #include "common/base/log.hpp"
 #include "common/geometry/depth.hpp"
 #include "proto-tests/bench/drift_bench.hpp"

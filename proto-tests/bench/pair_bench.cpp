@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "client/src/relocate.hpp"
+#include "client/odometry/relocate.hpp"
 #include "common/base/stamp.hpp"
-#include "common/registration/scan_match.hpp"
+#include "common/registration/scan/scan_match.hpp"
 
 namespace liloc::bench {
 namespace {

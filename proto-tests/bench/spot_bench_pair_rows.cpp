@@ -8,7 +8,7 @@
 #include <map>
 #include <queue>
 
-#include "common/registration/align.hpp"
+#include "common/registration/spot/align.hpp"
 #include "proto-tests/bench/spot_bench_pair_truth.hpp"
 
 namespace liloc::bench {

@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "common/geometry/voxel.hpp"
-#include "common/registration/nearest_grid.hpp"
-#include "common/registration/normals.hpp"
-#include "proto-tests/toolbox/cloud_file.hpp"
+#include "common/registration/points/nearest_grid.hpp"
+#include "common/registration/points/normals.hpp"
+#include "server/tools/cloud_file.hpp"
 
 namespace liloc::bench {
 namespace {

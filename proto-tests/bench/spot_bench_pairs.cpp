@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "common/base/stamp.hpp"
-#include "common/registration/align.hpp"
+#include "common/registration/spot/align.hpp"
 #include "proto-tests/bench/spot_bench_pair_truth.hpp"
 #include "proto-tests/bench/spot_bench_tables.hpp"
 

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "proto-tests/bench/spot_bench_tables.hpp"
-#include "proto-tests/toolbox/command.hpp"
+#include "server/tools/command.hpp"
 
 namespace liloc::bench {
 namespace {

@@ -5,14 +5,14 @@
 #include <deque>
 #include <limits>
 
-#include "client/src/engine.hpp"
+#include "client/engine/engine.hpp"
 #include "common/codec/codec.hpp"
-#include "common/registration/normals.hpp"
-#include "common/registration/pose_covariance.hpp"
+#include "common/registration/points/normals.hpp"
+#include "common/registration/refine/pose_covariance.hpp"
 #include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/truth.hpp"
+#include "server/localization/device_session.hpp"
 #include "server/localization/localizer.hpp"
-#include "server/localization/session.hpp"
 #include "server/localization/spot_solver.hpp"
 
 namespace liloc::bench {
@@ -30,7 +30,7 @@ struct Asked {
 struct Device {
   explicit Device(EngineOptions options) : engine(std::move(options)) {}
   Engine engine;
-  std::unique_ptr<Session> doubting;  ///< where evidence is gathered
+  std::unique_ptr<DeviceSession> doubting;  ///< where evidence is gathered
   std::optional<StampNs> first_asked_ns;
   std::deque<Asked> held;  ///< not yet answered; oldest first
 };
@@ -58,7 +58,7 @@ class Trial {
         recent_(stage.site.global_lidars.size()) {
     for (const DeviceInfo& device : stage.devices) {
       devices_.push_back(std::make_unique<Device>(replay::engine_options_of(device, true)));
-      devices_.back()->doubting = std::make_unique<Session>(doubting(server_options_));
+      devices_.back()->doubting = std::make_unique<DeviceSession>(doubting(server_options_));
     }
   }
 

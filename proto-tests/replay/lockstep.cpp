@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "client/src/engine.hpp"
-#include "client/src/trace.hpp"
+#include "client/engine/engine.hpp"
+#include "client/engine/trace.hpp"
 #include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/replay/timeline.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "client/src/engine.hpp"
+#include "client/engine/engine.hpp"
 #include "server/localization/localizer.hpp"
 
 namespace liloc::replay {

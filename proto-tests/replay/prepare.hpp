@@ -1,7 +1,7 @@
 #pragma once
 // What is checked and laid out before a replay starts, so that a bad recording costs nothing and leaves
 // nothing.
-#include "client/src/engine.hpp"
+#include "client/engine/engine.hpp"
 #include "common/recording/recording.hpp"
 #include "proto-tests/replay/options.hpp"
 

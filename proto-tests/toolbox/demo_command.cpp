@@ -8,7 +8,7 @@
 
 #include "common/command/checks.hpp"
 #include "proto-tests/replay/fleet.hpp"
-#include "proto-tests/toolbox/command.hpp"
+#include "proto-tests/toolbox/commands.hpp"
 #include "proto-tests/toolbox/device_table.hpp"
 #include "proto-tests/toolbox/live_site.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "common/command/program_options.hpp"
 #include "common/command/text.hpp"
-#include "proto-tests/toolbox/command.hpp"
+#include "proto-tests/toolbox/commands.hpp"
 
 namespace {
 

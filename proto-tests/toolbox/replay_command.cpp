@@ -5,7 +5,7 @@
 #include "common/command/checks.hpp"
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/replay/replay.hpp"
-#include "proto-tests/toolbox/command.hpp"
+#include "proto-tests/toolbox/commands.hpp"
 
 namespace liloc::toolbox {
 namespace {

@@ -6,7 +6,7 @@
 #include "common/command/checks.hpp"
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/sim/write_recording.hpp"
-#include "proto-tests/toolbox/command.hpp"
+#include "proto-tests/toolbox/commands.hpp"
 #include "proto-tests/toolbox/live_site.hpp"
 
 namespace liloc::toolbox {

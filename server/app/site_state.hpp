@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/geometry/camera.hpp"
-#include "common/registration/cell_bounds.hpp"
+#include "common/registration/search/cell_bounds.hpp"
 #include "server/global_cloud/depth_noise.hpp"
 
 namespace liloc {

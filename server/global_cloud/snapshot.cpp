@@ -5,8 +5,8 @@
 
 #include "common/base/log.hpp"
 #include "common/geometry/voxel.hpp"
-#include "common/registration/normals.hpp"
-#include "common/registration/up.hpp"
+#include "common/registration/points/normals.hpp"
+#include "common/registration/search/up.hpp"
 
 namespace liloc {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "common/geometry/camera.hpp"
 #include "common/geometry/depth.hpp"
-#include "common/registration/feature_search.hpp"
-#include "common/registration/target.hpp"
+#include "common/registration/search/feature_search.hpp"
+#include "common/registration/target/target.hpp"
 
 namespace liloc {
 

@@ -2,7 +2,7 @@
 // How probable it is that a place is the right one, from what spots say of it and of its rivals.
 #include <vector>
 
-#include "common/registration/judge.hpp"
+#include "common/registration/spot/judge.hpp"
 #include "server/localization/pose_filter.hpp"
 
 namespace liloc {

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "common/base/log.hpp"
-#include "server/localization/session.hpp"
+#include "server/localization/device_session.hpp"
 #include "server/localization/spot_solver.hpp"
 
 namespace liloc {
@@ -34,15 +34,15 @@ struct Localizer::Impl {
   const LocalizerOptions options;
   std::shared_ptr<const CellBounds> learned;
   mutable std::mutex mutex;
-  std::map<std::string, std::shared_ptr<Session>> sessions;
+  std::map<std::string, std::shared_ptr<DeviceSession>> sessions;
   std::map<std::string, Pose> last_learned;        ///< per client; a device that stands still teaches once
   std::set<std::string> troubled;                  ///< clients whose trouble the log has
   std::shared_ptr<const Snapshot> first_snapshot;  ///< static_noopt: the room as it was at the start
 
-  std::shared_ptr<Session> session(const std::string& client_id) {
+  std::shared_ptr<DeviceSession> session(const std::string& client_id) {
     const std::scoped_lock lock(mutex);
     auto& held = sessions[client_id];
-    if (!held) held = std::make_shared<Session>(options);
+    if (!held) held = std::make_shared<DeviceSession>(options);
     return held;
   }
 

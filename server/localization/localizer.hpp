@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/protocol/spot.hpp"
-#include "common/registration/cell_bounds.hpp"
-#include "common/registration/gravity_search.hpp"
+#include "common/registration/search/cell_bounds.hpp"
+#include "common/registration/search/gravity_search.hpp"
 #include "server/global_cloud/global_cloud.hpp"
 
 namespace liloc {

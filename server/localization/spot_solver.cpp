@@ -5,7 +5,7 @@
 
 #include "common/base/log.hpp"
 #include "common/codec/codec.hpp"
-#include "common/registration/feature_search.hpp"
+#include "common/registration/search/feature_search.hpp"
 
 namespace liloc {
 namespace {

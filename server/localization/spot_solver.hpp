@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "common/protocol/spot.hpp"
-#include "common/registration/spot.hpp"
+#include "common/registration/spot/spot.hpp"
 #include "server/global_cloud/snapshot.hpp"
 #include "server/localization/localizer.hpp"
 

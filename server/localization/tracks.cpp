@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/registration/settle.hpp"
+#include "common/registration/spot/settle.hpp"
 
 namespace liloc {
 

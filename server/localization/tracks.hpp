@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/registration/surface_bits.hpp"
+#include "common/registration/target/surface_bits.hpp"
 #include "server/localization/confidence.hpp"
 #include "server/localization/spot_solver.hpp"
 

@@ -7,7 +7,7 @@
 #include <atomic>
 #include <thread>
 
-#include "client/src/tests/by_heart_server.hpp"
+#include "client/api/tests/by_heart_server.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/testing/box_room.hpp"
 #include "common/wire/sensor_publishers.hpp"

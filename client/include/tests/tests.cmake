@@ -1,6 +1,6 @@
 # Tests of the C API, and of the package as a robot's project meets it: installed, moved, built against, run.
 # Each program that joins a DDS domain has its own, 171..178.
-add_executable(client_answering_server ${PROJECT_SOURCE_DIR}/client/src/tests/answering_server.cpp)
+add_executable(client_answering_server ${PROJECT_SOURCE_DIR}/client/api/tests/answering_server.cpp)
 target_link_libraries(client_answering_server PRIVATE liloc_warnings liloc::wire)
 liloc_test(NAME client_c_api SOURCES tests/c_api_test.cpp tests/c_api_running_test.cpp
   NEEDS liloc::client TIMEOUT 60)

@@ -291,12 +291,12 @@ TEST_F(CommandLine, PcdFilesThatLieAreRefusedBeforeRoomIsMadeForThem) {
            {fields + "DATA ascii\n", "WIDTH"},
            {"FIELDS x y q\nSIZE 4 4 4\nTYPE F F F\n" + one + "DATA ascii\n0 0 0\n", "no z"},
            {"FIELDS x y z\nSIZE 4 4\nTYPE F F F\n" + one + "DATA ascii\n0 0 0\n", "SIZEs"},
-           {fields + "COUNT 1 1 100000000\n" + one + "DATA ascii\n0 0 0\n", "COUNT"},
+           {fmt::format("{}COUNT 1 1 100000000\n{}DATA ascii\n0 0 0\n", fields, one), "COUNT"},
            {fields + "WIDTH -5\nHEIGHT 1\nPOINTS -5\nDATA ascii\n0 0 0\n", "POINTS"},
            {fields + "WIDTH 1\nHEIGHT 1\nPOINTS 7\nDATA ascii\n0 0 0\n", "POINTS"},
            {fields + "WIDTH 1000\nHEIGHT 1000\nPOINTS 1000000\nDATA binary\n0 0 0\n", "claims"},
            {fields + "WIDTH 1000\nHEIGHT 1000\nDATA ascii\n0 0 0\n", "claims"},
-           {fields + one + "DATA binary_compressed\n" + unpacked + "0000", "claims"}}) {
+           {fmt::format("{}{}DATA binary_compressed\n{}0000", fields, one, unpacked), "claims"}}) {
     ASSERT_TRUE(write_file(folder_.path() / "lie.pcd", text));
     const Outcome outcome = liloc("align " + path("lie.pcd") + " " + path("lie.pcd"));
     expect_complaint(outcome, 2, "lie.pcd");

@@ -1,0 +1,172 @@
+// The public API on top of a session and a DDS link: converts, checks the options, keeps the order of start and
+// stop.
+#include "client/include/liloc/client.hpp"
+
+#include <atomic>
+
+#include "client/api/public_types.hpp"
+#include "common/base/log.hpp"
+#include "common/wire/client_link.hpp"
+
+namespace liloc::client {
+namespace {
+
+constexpr std::size_t kMostPoints = 4'000'000;
+
+Outcome<Taken> to_public(const Status& status) {
+  return status ? Outcome<Taken>(Taken{}) : Outcome<Taken>::failed(status.error().message);
+}
+
+}  // namespace
+
+void set_log(LogCallback callback) {
+  if (!callback) return log::set_sink({});
+  log::set_sink([callback = std::move(callback)](log::Level level, std::string_view line) {
+    callback(static_cast<int>(level), std::string(line));
+  });
+}
+
+/// Members go from the last to the first: the link, the dispatcher with its thread, then the session it calls.
+struct Client::Impl {
+  Status connect(const Options& options);
+  void take_server(bool matched);
+  Status stop();
+
+  std::string id;
+  Camera camera;
+  PoseCallback on_pose;
+  ReplyCallback on_reply;
+  std::atomic<bool> connected = false;
+  std::unique_ptr<Session> session;
+  std::optional<wire::Participant> participant;
+  std::unique_ptr<wire::Dispatcher> dispatcher;
+  std::unique_ptr<wire::ClientLink> link;
+};
+
+void Client::Impl::take_server(bool matched) {
+  connected = matched;
+  if (matched)
+    log::info("{}: the server is there", id);
+  else
+    log::warning("{}: the server is gone; the device goes on by itself", id);
+}
+
+Status Client::Impl::connect(const Options& options) {
+  wire::DomainOptions domain;
+  domain.domain = options.domain;
+  domain.role = wire::Role::client;
+  domain.interface = options.network_interface;
+  domain.peers = options.peers;
+  auto joined = wire::Participant::create(domain);
+  if (!joined) return tl::unexpected(joined.error());
+  participant = std::move(*joined);
+  auto made = wire::Dispatcher::create(*participant);
+  if (!made) return tl::unexpected(made.error());
+  dispatcher = std::move(*made);
+  wire::ClientCallbacks callbacks;
+  callbacks.on_reply = [this](const SpotReply& reply) {
+    if (session->add_reply(reply) && on_reply) on_reply(to_public(reply));
+  };
+  callbacks.on_server = [this](bool matched) { take_server(matched); };
+  callbacks.on_bad_reply = [this](const std::string& why) { log::warning("{}: reply dropped: {}", id, why); };
+  auto linked = wire::ClientLink::create(*dispatcher, id, std::move(callbacks));
+  if (!linked) return tl::unexpected(linked.error());
+  link = std::move(*linked);
+  return {};
+}
+
+/// Frames first, then requests, then the network: the session's threads still use the link while they end.
+Status Client::Impl::stop() {
+  const Status stopped = session->stop();
+  dispatcher->stop();
+  return stopped;
+}
+
+Client::Client(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Client::~Client() {
+  if (const Status ok = impl_->stop(); !ok) log::error("{}", ok.error().message);
+}
+
+Outcome<std::unique_ptr<Client>> Client::create(const Options& options, PoseCallback on_pose,
+                                                ReplyCallback on_reply) {
+  using Made = Outcome<std::unique_ptr<Client>>;
+  auto session_options = to_session(options);
+  if (!session_options) return Made::failed(session_options.error().message);
+  auto impl = std::make_unique<Impl>();
+  Impl& self = *impl;
+  self.id = options.id;
+  self.camera = options.camera;
+  self.on_pose = std::move(on_pose);
+  self.on_reply = std::move(on_reply);
+  if (const Status ok = self.connect(options); !ok) return Made::failed(ok.error().message);
+  SessionCallbacks callbacks;
+  callbacks.send = [&self](const SpotRequest& request) { return self.link->send(request); };
+  callbacks.on_frame = [&self](const FrameResult& frame, Tracking tracking) {
+    if (self.on_pose) self.on_pose(to_public(frame, tracking, self.connected));
+  };
+  auto session = Session::create(std::move(*session_options), std::move(callbacks));
+  if (!session) return Made::failed(session.error().message);
+  self.session = std::move(*session);
+  self.dispatcher->start();
+  return std::unique_ptr<Client>(new Client(std::move(impl)));
+}
+
+Outcome<Taken> Client::push_depth(const std::uint16_t* units, int width, int height, std::int64_t stamp_ns) {
+  DepthImage image;
+  if (units == nullptr || width != impl_->camera.width || height != impl_->camera.height)
+    return Outcome<Taken>::failed(fmt::format("{}: depth image is {}x{}, options.camera is {}x{}", impl_->id,
+                                              width, height, impl_->camera.width, impl_->camera.height));
+  image.stamp_ns = stamp_ns;
+  image.width = width;
+  image.height = height;
+  image.units.assign(units, units + static_cast<std::ptrdiff_t>(width) * height);
+  return to_public(impl_->session->push_depth(std::move(image)));
+}
+
+Outcome<Taken> Client::push_points(const float* xyz, std::size_t count, std::int64_t stamp_ns) {
+  if (xyz == nullptr || count > kMostPoints)
+    return Outcome<Taken>::failed(fmt::format("{}: {} points{}; pass up to {}", impl_->id, count,
+                                              xyz == nullptr ? " at NULL" : "", kMostPoints));
+  Cloud cloud;
+  cloud.points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) cloud.points.emplace_back(xyz + 3 * i);
+  return to_public(impl_->session->push_points(stamp_ns, std::move(cloud)));
+}
+
+Outcome<Taken> Client::push_odometry(std::int64_t stamp_ns, const Pose& T_odom_base,
+                                     const std::optional<std::array<double, 36>>& covariance) {
+  const auto pose = to_domain(T_odom_base, "T_odom_base");
+  if (!pose) return Outcome<Taken>::failed(fmt::format("{}: {}", impl_->id, pose.error().message));
+  OdometrySample sample{stamp_ns, *pose, std::nullopt};
+  if (covariance)
+    sample.covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(covariance->data());
+  return to_public(impl_->session->push_odometry(sample));
+}
+
+Outcome<Taken> Client::push_imu(std::int64_t stamp_ns, const std::array<double, 3>& angular_velocity_rad_s,
+                                const std::array<double, 3>& specific_force_m_s2) {
+  ImuSample sample;
+  sample.stamp_ns = stamp_ns;
+  sample.angular_velocity_rad_s = Eigen::Vector3d(angular_velocity_rad_s.data());
+  sample.specific_force_m_s2 = Eigen::Vector3d(specific_force_m_s2.data());
+  return to_public(impl_->session->push_imu(sample));
+}
+
+PoseUpdate Client::newest() const {
+  const auto frame = impl_->session->newest_frame();
+  if (frame) return to_public(*frame, impl_->session->tracking(), impl_->connected);
+  PoseUpdate none;
+  none.server_connected = impl_->connected;
+  return none;
+}
+
+Stats Client::stats() const {
+  return to_public(impl_->session->stats());
+}
+
+Outcome<Taken> Client::stop() {
+  return to_public(impl_->stop());
+}
+
+}  // namespace liloc::client

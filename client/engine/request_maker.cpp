@@ -1,0 +1,97 @@
+#include "client/engine/request_maker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/engine/byte_budget.hpp"
+#include "client/engine/submap.hpp"
+#include "common/geometry/voxel.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr std::size_t kMostLocalPoses = 250;  // a message holds 256; older ones of a long silence are left out
+constexpr std::size_t kLpcPoints = 4000;      // 6 to 7 kB at 0.05 m
+constexpr StampNs kSubmapAge = from_ms(10'000);  // since a surface was seen, where odometry is sure of itself
+constexpr std::size_t kSubmapPoints = 2000;      // about 3 kB at 0.05 m
+constexpr std::size_t kFewestSubmapPoints = 60;  // fewer tell nothing
+constexpr double kSteadySdM = 0.01, kSteadySdRad = radians(0.4);  // of the motion between two requests
+constexpr double kOdomSdM = 0.002, kOdomSdRad = 0.001, kOdomSdShare = 0.005;  // clocks; scale of path and turn
+
+/// Finer voxels of the same surfaces are more: with fewer points they would hang in the air.
+std::size_t points_at(double voxel_size_m, std::size_t at_5_cm) {
+  const double finer = std::max(1.0, 0.05 / voxel_size_m);
+  return std::min(kMaxCodecPoints, static_cast<std::size_t>(finer * finer * static_cast<double>(at_5_cm)));
+}
+
+}  // namespace
+
+void RequestMaker::travelled(StampNs stamp_ns, const OdometryStep& step, bool informative) {
+  if (step.segment != last_.segment) {  // poses of the old segment say nothing about the new one
+    path_.clear();
+    path_m_ = turned_rad_ = 0;
+    unsteady_ns_ = 0;
+  } else if (travelled_) {
+    path_m_ += distance_m(step.T_odom_sensor, last_.T_odom_sensor);
+    turned_rad_ += angle_between_rad(step.T_odom_sensor, last_.T_odom_sensor);
+  }
+  travelled_ = true;
+  last_ = step;
+  if (path_.size() >= kMostLocalPoses) path_.erase(path_.begin());
+  path_.push_back({stamp_ns, step.T_odom_sensor, informative});
+}
+
+MotionSd RequestMaker::motion_sd() const {
+  return {std::hypot(kOdomSdRad, kOdomSdShare * turned_rad_, last_.sd_rad),
+          std::hypot(kOdomSdM, kOdomSdShare * path_m_, last_.sd_m)};
+}
+
+void RequestMaker::add_surroundings(const LocalMap& surroundings, StampNs since_ns,
+                                    SpotRequest& request) const {
+  const Cloud standing = surroundings.standing(since_ns, request.stamp_ns);
+  const auto thinned = [&](std::size_t most) {
+    Cloud extra = outside_view(standing, request.T_odom_sensor, request.view, most);
+    return extra.size() < kFewestSubmapPoints ? Cloud{} : extra;
+  };
+  const std::size_t left = options_.request_bytes - request.lpc.bytes.size();
+  auto extra =
+      encode_within(left, points_at(options_.voxel_size_m, kSubmapPoints), 2 * options_.voxel_size_m, thinned);
+  if (extra) request.extra = std::move(*extra);  // otherwise the frame says it all
+}
+
+Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap& surroundings,
+                                       const ImuTrack* imu, bool located) {
+  const auto thinned = [&](std::size_t most) {
+    return voxel_downsample(cloud_sensor, options_.voxel_size_m, most);
+  };
+  auto lpc = encode_within(options_.request_bytes, points_at(options_.voxel_size_m, kLpcPoints),
+                           options_.voxel_size_m, thinned);
+  if (!lpc) return tl::unexpected(lpc.error());
+  SpotRequest r;
+  r.client_id = options_.client_id;
+  r.seq = next_seq_++;
+  r.stamp_ns = path_.back().stamp_ns;
+  r.odom_segment = last_.segment;
+  r.T_odom_sensor = last_.T_odom_sensor;
+  const MotionSd sd = motion_sd();
+  r.odom_sd_rad = sd.rad;
+  r.odom_sd_m = sd.m;
+  r.local_poses = std::exchange(path_, {});
+  r.lpc = std::move(*lpc);
+  r.voxel_size_m = options_.voxel_size_m;
+  r.view = {options_.camera, options_.min_range_m, options_.max_range_m};
+  if (imu != nullptr) {
+    const auto up_imu = imu->up(r.stamp_ns);
+    if (up_imu) r.up_sensor = options_.T_imu_sensor->linear().transpose() * *up_imu;
+    r.up_sd_rad = imu->up_sd_rad();
+  }
+  r.cold = options_.cold;
+  if (r.odom_sd_m > kSteadySdM || r.odom_sd_rad > kSteadySdRad) unsteady_ns_ = r.stamp_ns;
+  const StampNs oldest_ns = r.stamp_ns - kSubmapAge;
+  if (options_.submap && !options_.cold)
+    add_surroundings(surroundings, located ? std::max(oldest_ns, unsteady_ns_) : oldest_ns, r);
+  path_m_ = turned_rad_ = 0;
+  return r;
+}
+
+}  // namespace liloc

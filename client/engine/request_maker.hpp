@@ -1,0 +1,38 @@
+#pragma once
+#include <vector>
+
+#include "client/engine/pose_doubt.hpp"
+#include "client/odometry/odometry.hpp"
+
+namespace liloc {
+
+/// Gathers what a device has to tell since its last request, the path and how sure it is of that, and makes the
+/// next request of it and the newest frame. Not thread-safe.
+class RequestMaker {
+ public:
+  explicit RequestMaker(const EngineOptions& options) : options_(options) {}
+
+  /// To be called once for each frame whose place is known. A new segment starts the path anew.
+  void travelled(StampNs stamp_ns, const OdometryStep& step, bool informative);
+  /// Of the motion since the last request.
+  [[nodiscard]] MotionSd motion_sd() const;
+  /// The request for the frame that travelled last: `cloud_sensor` is all it shows, `surroundings` what the
+  /// device has seen around it (left out as the options say), `imu` may be null. A device that is `located`
+  /// sends only surroundings that its odometry has placed well; one that is not, all it has. A frame that can
+  /// be sent ends the path. Errors: those of `encode`; the path then goes on.
+  [[nodiscard]] Result<SpotRequest> make(const Cloud& cloud_sensor, const LocalMap& surroundings,
+                                         const ImuTrack* imu, bool located = false);
+
+ private:
+  void add_surroundings(const LocalMap& surroundings, StampNs since_ns, SpotRequest& request) const;
+
+  EngineOptions options_;
+  std::uint64_t next_seq_ = 1;
+  std::vector<LocalPose> path_;  ///< since the last request
+  OdometryStep last_;
+  StampNs unsteady_ns_ = 0;  ///< of this segment's last request whose motion is not known well
+  bool travelled_ = false;
+  double path_m_ = 0, turned_rad_ = 0;  ///< since the last request
+};
+
+}  // namespace liloc

@@ -1,0 +1,71 @@
+#include "client/odometry/points_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include "client/engine/tests/walker.hpp"
+#include "common/codec/codec.hpp"
+#include "common/geometry/depth.hpp"
+
+namespace liloc {
+namespace {
+
+using namespace test;
+
+TEST(PointsView, TheImageOfACloudIsTheImageItCameFrom) {
+  const auto room = scene::furnished_room(3);
+  const DepthImage image = frame_at(room, 10, 0);
+  const auto cloud = depth_to_cloud(image, scene::small_camera(), {.max_range_m = 60, .flying_pixel_share = 0});
+  ASSERT_TRUE(cloud);
+  const DepthImage back = depth_of_points(*cloud, scene::small_camera(), image.stamp_ns);
+  int off = 0;
+  for (std::size_t i = 0; i < image.units.size(); ++i)
+    if (image.units[i] >= 250) off += back.units[i] != image.units[i];
+  EXPECT_EQ(off, 0);
+}
+
+TEST(PointsView, TheNearestPointOfAPixelWinsAndHolesOfOnePixelClose) {
+  const Camera camera{4, 1, 1, 1, 1.5, 0, 0.001};
+  const auto pixel = [&](int u, float z) { return Eigen::Vector3f(static_cast<float>(u - 1.5) * z, 0, z); };
+  const Cloud cloud{{pixel(0, 2), pixel(0, 1), pixel(2, 1.02F), {0, 0, -1}, {NAN, 0, 1}}, {}};
+  const DepthImage image = depth_of_points(cloud, camera, 1);
+  EXPECT_EQ(image.units[0], 1000);
+  EXPECT_NEAR(image.units[1], 1010, 1);  // between two of one surface
+  EXPECT_EQ(image.units[3], 0);
+}
+
+TEST(PointsView, WhatLiesOutsideTheViewIsLeftOut) {
+  const Camera camera = scene::small_camera();
+  const Cloud cloud{{{0, 0, 2}, {0, 0, 0.1F}, {0, 0, 20}, {9, 0, 2}, {0, 0, -2}}, {}};
+  EXPECT_EQ(within_view(cloud, camera, 0.25, 8.5).size(), 1U);
+}
+
+/// The same walk as clouds and as images: the odometry must follow either.
+TEST(PointsView, AnEngineFollowsClouds) {
+  const auto room = scene::furnished_room(1);
+  Engine engine(engine_options());
+  FrameResult first, now;
+  for (int i = 0; i < 60; ++i) {
+    const auto cloud = depth_to_cloud(frame_at(room, i), scene::small_camera(), {});
+    const auto frame = engine.add_points(stamp_of(i), *cloud);
+    ASSERT_TRUE(frame) << frame.error().message;
+    now = *frame;
+    if (i == 0) first = now;
+    EXPECT_TRUE(now.informative && now.converged) << i;
+    if (const auto request = engine.take_request()) {
+      EXPECT_GT(decode(request->lpc)->size(), 500U);
+    }
+  }
+  const Pose truth = walk(time_of(0)).inverse() * walk(time_of(59));
+  EXPECT_LT(distance_m(truth, first.T_odom_sensor.inverse() * now.T_odom_sensor), 0.03);
+}
+
+TEST(PointsView, AnEmptyCloudIsAFrameThatSaysNothing) {
+  Engine engine(engine_options());
+  const auto frame = engine.add_points(kStart, Cloud{});
+  ASSERT_TRUE(frame);
+  EXPECT_FALSE(frame->informative);
+  EXPECT_FALSE(engine.take_request());
+}
+
+}  // namespace
+}  // namespace liloc

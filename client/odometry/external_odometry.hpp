@@ -1,0 +1,67 @@
+#pragma once
+#include <deque>
+#include <optional>
+
+#include "client/inertial/sample_stamps.hpp"
+#include "client/odometry/odometry.hpp"
+
+namespace liloc {
+
+/// A pose by the odometry of somebody else, in a frame of its own that never jumps.
+struct OdometrySample {
+  StampNs stamp_ns = 0;
+  Pose T_odom_base = Pose::Identity();
+  std::optional<Matrix6d> covariance;  ///< of the pose, [rad; m]; its growth bounds the motion's error
+};
+
+struct ExternalOdometryOptions {
+  Pose T_base_sensor = Pose::Identity();       ///< where the depth sensor sits on what the odometry moves
+  StampNs keep_ns = from_ms(10'000);           ///< memory bound
+  StampNs gap_ns = from_ms(1000);              ///< without samples for longer, a new segment starts
+  StampNs reach_ns = from_ms(100);             ///< how far beyond the newest sample a pose is still guessed
+  double jump_m = 0.05, jump_rad = 0.05;       ///< a step beyond this ...
+  double speed_m_s = 5, turn_rate_rad_s = 10;  ///< ... and beyond what these allow is a jump: a new segment
+};
+
+/// Odometry that somebody else keeps (wheels, a legged robot's own estimator): poses at the frames' stamps, and
+/// segments within which it holds together. Not thread-safe.
+class ExternalOdometry {
+ public:
+  explicit ExternalOdometry(const ExternalOdometryOptions& options) : options_(options) {}
+
+  /// A covariance that cannot be one is taken for unknown. Errors: not finite, StampWatch's; the sample is then
+  /// ignored.
+  [[nodiscard]] Status add(const OdometrySample& sample);
+  /// Where the sensor is at a frame's stamp: "external" between two samples, "guess" a little beyond the newest
+  /// or where there is none near; the pose is then the last one and `placed` is false.
+  [[nodiscard]] OdometryStep step(StampNs stamp_ns);
+  [[nodiscard]] bool placed() const { return placed_; }
+  /// The growth of the covariance is counted from the last step on.
+  void mark() { marked_ = last_covariance_; }
+  /// The frames' clock was set: a new segment starts.
+  void frames_clock_set();
+
+ private:
+  struct Entry {
+    OdometrySample sample;
+    std::uint32_t segment;
+  };
+  [[nodiscard]] bool continues(const OdometrySample& from, const OdometrySample& to) const;
+  void place(const Entry& entry, const Pose& T_odom_base, OdometryStep& step);
+
+  void set_clock(StampNs by_ns);
+  void know(OdometrySample& sample);
+
+  ExternalOdometryOptions options_;
+  StampWatch stamps_{{"odometry", kClosestSampleNs, kJudgedSamples}};
+  std::deque<Entry> entries_;  ///< by rising stamp
+  Pose T_odom_last_ = Pose::Identity();
+  std::uint32_t segment_ = 0;          ///< of the newest sample
+  std::uint32_t segments_before_ = 0;  ///< that ended because the frames' clock was set
+  std::uint32_t last_segment_ = 0;
+  bool placed_ = false;
+  bool covariance_told_ = false;
+  std::optional<Matrix6d> last_covariance_, marked_;
+};
+
+}  // namespace liloc

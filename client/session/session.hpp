@@ -1,0 +1,61 @@
+#pragma once
+// The engine on its threads, without a transport: requests leave through a function, replies come in by a call.
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "client/session/session_report.hpp"
+
+namespace liloc {
+
+struct SessionOptions {
+  EngineOptions engine;
+  std::size_t queue_frames = 4;
+  std::filesystem::path trace_folder;  ///< empty: no trace
+  double cpu_share = 1;                ///< of one core for the registration; frames are left out to keep it
+};
+
+struct SessionCallbacks {
+  /// Sends a request; on the sending thread, may wait. An error counts as unsent.
+  std::function<Status(const SpotRequest&)> send;
+  /// After each frame; on the registration thread.
+  std::function<void(const FrameResult&, Tracking)> on_frame;
+};
+
+/// All calls are safe from any thread; none waits for the network.
+class Session {
+ public:
+  /// Errors: the trace folder.
+  [[nodiscard]] static Result<std::unique_ptr<Session>> create(SessionOptions options,
+                                                               SessionCallbacks callbacks);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Queues; the oldest frame makes room when the queue is full. Errors: stopped, a stamp that is not positive
+  /// or looks like another unit.
+  [[nodiscard]] Status push_depth(DepthImage image);
+  /// A cloud in place of an image; the same queue. Errors: as above.
+  [[nodiscard]] Status push_points(StampNs stamp_ns, Cloud cloud_sensor);
+  /// Handed to the engine before the next frame, which waits a moment for it. Errors: the local method is not
+  /// external, stopped, the stamp as above.
+  [[nodiscard]] Status push_odometry(const OdometrySample& sample);
+  /// Handed to the engine before the next frame. Errors: no IMU in the options, not finite, stopped, the
+  /// stamp as above.
+  [[nodiscard]] Status push_imu(const ImuSample& sample);
+  /// Waits at most for the frame in work. False where another server's answers count (ServerChoice).
+  bool add_reply(const SpotReply& reply);
+
+  [[nodiscard]] std::optional<FrameResult> newest_frame() const;
+  [[nodiscard]] Tracking tracking() const;
+  [[nodiscard]] SessionStats stats() const;
+  /// Refuses new frames, finishes the waiting ones, sends what is due, closes the trace. Idempotent.
+  [[nodiscard]] Status stop();
+
+ private:
+  struct Impl;
+  explicit Session(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace liloc

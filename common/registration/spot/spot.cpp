@@ -1,0 +1,68 @@
+#include "common/registration/spot/spot.hpp"
+
+#include <algorithm>
+
+#include "common/registration/spot/settle.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr int kSketchIterations = 6;
+
+/// Moves each candidate nearer with few points, unless that makes it worse, as it does where surfaces do not
+/// hold a pose; and scores it.
+void sketch(const SpotProblem& problem, std::vector<Candidate>* candidates) {
+  const JudgeOptions& options = problem.judging;
+  const auto score = [&](const Pose& T_map_sensor) {
+    return judge(problem.target, problem.query, problem.query.sparse, T_map_sensor, options.sketch_tolerance_m,
+                 MapShare::half, options.sketch_conflict_weight)
+        .score;
+  };
+  for (Candidate& c : *candidates) {
+    const Pose nearer =
+        approach(problem.target, problem.query, c.T_map_sensor, kSketchIterations, options.refine);
+    c.score = score(c.T_map_sensor);
+    const double score_nearer = score(nearer);
+    if (score_nearer < c.score) continue;
+    c.score = score_nearer;
+    c.T_map_sensor = nearer;
+  }
+}
+
+/// Lines of sight settle what surfaces do not, unless something else explains all by far better.
+std::vector<Hypothesis> refined_of(const SpotProblem& problem, const std::vector<Candidate>& candidates) {
+  std::vector<Hypothesis> refined;
+  bool clean = false;
+  for (const Candidate& c : candidates) {
+    refined.push_back(refine_and_judge(problem, c.T_map_sensor));
+    clean = clean || is_clean(refined.back());
+  }
+  if (problem.target.views.empty()) return refined;
+  for (std::size_t i = 0; i < refined.size(); ++i)
+    if (!is_clean(refined[i]) && (!clean || candidates[i].score > candidates[0].score - problem.judging.rival))
+      refined[i] = settle(problem, candidates[i].T_map_sensor, std::move(refined[i]));
+  return refined;
+}
+
+}  // namespace
+
+std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector<Candidate> candidates) {
+  const JudgeOptions& options = problem.judging;
+  candidates = distinct(std::move(candidates), options.sketch_most);
+  sketch(problem, &candidates);
+  candidates = distinct(std::move(candidates), options.refine_most);
+  std::vector<Hypothesis> refined = refined_of(problem, candidates);
+  std::stable_sort(refined.begin(), refined.end(), [](const Hypothesis& a, const Hypothesis& b) {
+    return a.judgement.score > b.judgement.score;
+  });
+  std::vector<Hypothesis> kept;
+  for (const Hypothesis& h : refined) {
+    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& k) {
+      return same_place(k.T_map_sensor(), h.T_map_sensor());
+    });
+    if (!known && kept.size() < options.keep) kept.push_back(h);
+  }
+  return kept;
+}
+
+}  // namespace liloc

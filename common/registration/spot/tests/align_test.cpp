@@ -1,0 +1,109 @@
+#include "common/registration/spot/align.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/geometry/depth.hpp"
+#include "common/testing/box_room.hpp"
+
+namespace liloc {
+namespace {
+
+/// What a camera sees that is turned about at a place: a fragment, in the frame of its first view.
+Cloud fragment(const scene::BoxRoom& room, const Eigen::Vector3d& place, double from_rad, double to_rad,
+               unsigned seed) {
+  Cloud cloud;
+  for (double yaw = from_rad; yaw <= to_rad + 1e-9; yaw += 0.5) {
+    const Pose T = scene::looking(place, yaw, radians(15));
+    append(cloud, transformed(T, *depth_to_cloud(scene::render(room, T, scene::small_camera(), 1, 0.004, seed),
+                                                 scene::small_camera())));
+  }
+  return transformed(scene::looking(place, from_rad, radians(15)).inverse(), cloud);
+}
+
+Pose pose_of(const Eigen::Vector3d& place, double from_rad) {
+  return scene::looking(place, from_rad, radians(15));
+}
+
+struct FragmentPair {
+  Cloud source, target;
+  Pose T_target_source;
+};
+
+FragmentPair fragment_pair(unsigned seed, double turned_rad) {
+  const scene::BoxRoom room = scene::furnished_room(seed);
+  const Eigen::Vector3d here(3, 2.5, 1.3), there(2.4, 2.2, 1.4);
+  const double at = 0.7 * seed;
+  return {fragment(room, there, at + turned_rad, at + turned_rad + 1.0, seed + 100),
+          fragment(room, here, at, at + 1.0, seed),
+          pose_of(here, at).inverse() * pose_of(there, at + turned_rad)};
+}
+
+class AlignLaw : public testing::TestWithParam<unsigned> {};
+
+TEST_P(AlignLaw, TrustedIsRightAndConfidenceIsAProbability) {
+  for (const double turned_rad : {0.0, 0.8, 1.6, 3.1}) {
+    const FragmentPair pair = fragment_pair(GetParam(), turned_rad);
+    const auto result = align_clouds(pair.source, pair.target, {});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_GE(result->confidence, 0);
+    EXPECT_LE(result->confidence, 1);
+    EXPECT_EQ(result->trusted, result->confidence >= 1 - AlignOptions{}.risk);
+    const bool right = distance_m(result->T_target_source, pair.T_target_source) < 0.2 &&
+                       degrees(angle_between_rad(result->T_target_source, pair.T_target_source)) < 5;
+    EXPECT_TRUE(right || !result->trusted) << "turned by " << turned_rad << ", " << result->confidence;
+    if (turned_rad == 0) {
+      EXPECT_TRUE(right && result->trusted) << result->confidence;
+    }
+  }
+}
+
+TEST_P(AlignLaw, OtherRoomsAreNotTrusted) {
+  const auto result =
+      align_clouds(fragment_pair(GetParam(), 0).source, fragment_pair(GetParam() + 1, 2).target, {});
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->trusted) << result->confidence;
+}
+
+TEST_P(AlignLaw, ARoomThatLooksTheSameAfterAHalfTurnIsNotTrusted) {
+  const scene::BoxRoom bare;
+  const Eigen::Vector3d middle(3, 2.5, 1.35);
+  const double at = 0.7 * GetParam();
+  const auto result = align_clouds(fragment(bare, middle, at, at + 2 * M_PI, GetParam()),
+                                   fragment(bare, middle, 0, 2 * M_PI, GetParam() + 50), {});
+  ASSERT_TRUE(result);
+  EXPECT_LE(result->confidence, 0.8);
+  EXPECT_FALSE(result->trusted);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, AlignLaw, testing::Range(1U, 7U));
+
+TEST(AlignConfidence, OfTwoThatAreAlikeNeitherIsLikelierThanNot) {
+  for (const double odds : {-5.0, 0.0, 3.0, 30.0}) {
+    EXPECT_LE(confidence_of({odds, odds}), 0.5);
+    EXPECT_LE(confidence_of({odds, odds - 1}), confidence_of({odds, odds - 2}));
+    EXPECT_LT(confidence_of({odds}), confidence_of({odds + 1}));
+  }
+}
+
+TEST(AlignConfidence, EmptySpaceSpeaksAgainstAndFeaturesSpeakFor) {
+  AlignEvidence evidence;
+  evidence.agree = 500;
+  evidence.matched = 40;
+  AlignEvidence more = evidence, contradicted = evidence;
+  more.matched = 80;
+  contradicted.conflict = 20;
+  EXPECT_GT(log_odds_of(more), log_odds_of(evidence));
+  EXPECT_LT(log_odds_of(contradicted), log_odds_of(evidence));
+}
+
+TEST(AlignOptions, TheRiskIsAProbability) {
+  const Cloud cloud = fragment_pair(1, 0).source;
+  for (const double risk : {0.0, 1.0, -0.1, std::nan("")}) {
+    AlignOptions options;
+    options.risk = risk;
+    EXPECT_FALSE(align_clouds(cloud, cloud, options)) << risk;
+  }
+}
+
+}  // namespace
+}  // namespace liloc

@@ -1,0 +1,172 @@
+#include "common/registration/target/target.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include "common/geometry/voxel.hpp"
+#include "common/registration/points/normals.hpp"
+
+namespace liloc {
+namespace {
+
+// Sums of the coarse field must fit a byte by eights; at 0.1 m a conflict is meant.
+constexpr FieldOptions kCoarseField{0.2, 0.13, -10, 40};  // padded for devices that see 8 m far
+constexpr FieldOptions kFineField{0.1, 0.08, -40, 0};
+
+constexpr double kBeside_m = 0.3;   // of what is seen of somebody from above: the rest, and a step in 0.1 s
+constexpr double kAround_m = 0.45;  // within which they hide a surface from the device, or are one themselves
+constexpr float kGone_m = 0.05F;
+
+/// Whether a ceiling sensor looks through the place by now and none sees anything there.
+bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
+  bool through = false;
+  for (const SightView& view : views) {
+    const Sight word = view.look(p_map, kGone_m);
+    if (word == Sight::agrees) return false;
+    through = through || word == Sight::conflict;
+  }
+  return through;
+}
+
+/// Surfaces near `around`, and those that are gone.
+std::vector<std::uint8_t> stale_points(const Cloud& cloud_map, const std::vector<SightView>& views,
+                                       const Vicinity& around) {
+  std::vector<std::uint8_t> stale(cloud_map.size(), 0);
+  for (std::size_t i = 0; i < cloud_map.size(); ++i)
+    stale[i] = around.at(cloud_map.points[i]) || gone(views, cloud_map.points[i]) ? 1 : 0;
+  return stale;
+}
+
+MapPoints map_points_of(const Cloud& cloud_map, const std::vector<std::uint8_t>& stale) {
+  std::vector<Eigen::Vector3f> sound, doubtful;
+  for (std::size_t i = 0; i < cloud_map.size(); ++i)
+    (stale[i] != 0 ? doubtful : sound).push_back(cloud_map.points[i]);
+  return MapPoints(sound, doubtful);
+}
+
+NearestGrid nearest_of(const Cloud& cloud, double cell_m, double reach_m, const NearestGrid* before,
+                       const CloudChange& change) {
+  return before == nullptr ? NearestGrid(cloud.points, cell_m, reach_m)
+                           : NearestGrid(cloud.points, cell_m, reach_m, *before, change);
+}
+
+/// About `count` points spread evenly in space: the coarsest voxel grid that still has so many, then a random
+/// cut.
+Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, std::uint64_t seed) {
+  Cloud thin = cloud;
+  for (double size = 8 * voxel_size_m; size > voxel_size_m; size *= 0.75) {
+    thin = voxel_downsample(cloud, size);
+    if (thin.size() >= count) break;
+  }
+  std::mt19937_64 rng(seed);
+  while (thin.size() > count) {
+    const std::size_t i = rng() % thin.size();
+    thin.points[i] = thin.points.back();
+    thin.points.pop_back();
+    if (thin.normals.empty()) continue;
+    thin.normals[i] = thin.normals.back();
+    thin.normals.pop_back();
+  }
+  return thin;
+}
+
+/// Points with normals. A cloud that was thinned to few bytes is sparser than its voxels, and nearly all of it
+/// would hang in the air: there neighbourhoods widen until it holds together.
+Cloud with_normals_of(const Cloud& seen, double voxel_size_m) {
+  constexpr double kRadius = 2.5, kWiden = 1.5, kWidest = 8;  // in voxels
+  double radius = kRadius;
+  Cloud cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
+  while (3 * cloud.size() < seen.size() && (radius *= kWiden) < kWidest)
+    cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
+  return cloud;
+}
+
+}  // namespace
+
+struct Surfaces::Changes {
+  CloudChange cloud, coarse;
+};
+
+Surfaces::Surfaces(const Cloud& cloud_map, std::vector<SightView> views, double voxel_size_m,
+                   const Surfaces* before)
+    : Surfaces(cloud_map, voxel_downsample(cloud_map, 2 * voxel_size_m), std::move(views), voxel_size_m,
+               before) {}
+
+Surfaces::Surfaces(const Cloud& cloud_map, const Cloud& coarse_map, std::vector<SightView> views,
+                   double voxel_size_m, const Surfaces* before)
+    : Surfaces(cloud_map, coarse_map, std::move(views), voxel_size_m, before,
+               before == nullptr ? Changes{}
+                                 : Changes{change_between(before->cloud, cloud_map),
+                                           change_between(before->coarse, coarse_map)}) {}
+
+Surfaces::Surfaces(const Cloud& cloud_map, const Cloud& coarse_map, std::vector<SightView> views,
+                   double voxel_size_m, const Surfaces* before, const Changes& changes)
+    : cloud(cloud_map),
+      coarse(coarse_map),
+      map_points(coarse.points),
+      nearest(nearest_of(cloud, voxel_size_m, 1.3 * voxel_size_m,
+                         before == nullptr ? nullptr : &before->nearest, changes.cloud)),
+      nearest_coarse(nearest_of(coarse, 3 * voxel_size_m, 0.32,
+                                before == nullptr ? nullptr : &before->nearest_coarse, changes.coarse)),
+      views_(std::move(views)) {
+  if (before != nullptr && before->has_fields_) build_fields(before, &changes.coarse);
+}
+
+void Surfaces::build_fields(const Surfaces* before, const CloudChange* change) const {
+  std::call_once(once_, [&] {
+    const auto layers = [&](const FieldOptions& options, const FieldLayers Surfaces::*member) {
+      if (before == nullptr) return FieldLayers(coarse, views_, options);
+      return FieldLayers(coarse, views_, options, {before->*member, before->views_, *change});
+    };
+    layers_coarse_ = layers(kCoarseField, &Surfaces::layers_coarse_);
+    layers_fine_ = layers(kFineField, &Surfaces::layers_fine_);
+    field_coarse_ = ScoreField(layers_coarse_, kCoarseField);
+    field_fine_ = ScoreField(layers_fine_, kFineField);
+    has_fields_ = true;
+  });
+}
+
+const ScoreField& Surfaces::field_coarse() const {
+  build_fields(nullptr, nullptr);
+  return field_coarse_;
+}
+
+const ScoreField& Surfaces::field_fine() const {
+  build_fields(nullptr, nullptr);
+  return field_fine_;
+}
+
+Present::Present(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
+                 const Cloud& moving_map)
+    : movers(moving_map.points, kBeside_m),
+      stale(stale_points(surfaces->coarse, views, Vicinity(moving_map.points, kAround_m))),
+      map_points(map_points_of(surfaces->coarse, stale)),
+      surfaces_(std::move(surfaces)) {}
+
+const ScoreField& Present::field_coarse() const {
+  if (movers.empty()) return surfaces_->field_coarse();
+  std::call_once(once_, [this] {
+    field_coarse_ = surfaces_->field_coarse();
+    field_coarse_.forget_free_space(movers);
+  });
+  return field_coarse_;
+}
+
+Target make_target(const Cloud& cloud_map, std::vector<SightView> views, double voxel_size_m) {
+  auto surfaces = std::make_shared<const Surfaces>(cloud_map, views, voxel_size_m);
+  return {std::move(surfaces), std::move(views)};
+}
+
+Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options,
+                 const Cloud& extra_sensor) {
+  Query query;
+  Cloud seen = voxel_downsample(cloud_sensor, options.voxel_size_m);
+  if (camera != nullptr) query.view = SightView::from_cloud(seen, *camera, options.voxel_size_m, 80);
+  seen.points.insert(seen.points.end(), extra_sensor.points.begin(), extra_sensor.points.end());
+  query.cloud = with_normals_of(seen, options.voxel_size_m);
+  query.medium = voxel_downsample(query.cloud, 2 * options.voxel_size_m);
+  query.sparse = spread_points(query.cloud, options.sparse_points, options.voxel_size_m, options.seed);
+  return query;
+}
+
+}  // namespace liloc

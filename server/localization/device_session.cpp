@@ -1,0 +1,241 @@
+#include "server/localization/device_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/registration/refine/pose_covariance.hpp"
+#include "common/registration/spot/settle.hpp"
+#include "server/localization/advice.hpp"
+
+namespace liloc {
+namespace {
+
+void report(const Hypothesis& hypothesis, const PoseEstimate& estimate, double margin, SpotReply* reply) {
+  reply->T_map_sensor = estimate.T_map_sensor;
+  reply->covariance = estimate.covariance;
+  reply->fitness = hypothesis.alignment.fitness;
+  reply->inlier_rmse_m = hypothesis.alignment.inlier_rmse_m;
+  reply->overlap = hypothesis.judgement.overlap();
+  reply->margin = margin;
+  const Judgement& j = hypothesis.judgement;
+  reply->text = fmt::format("device: {:.0f} % agree, {:.1f} % conflict; ceiling: {:.0f} % agree", 100 * j.agree,
+                            100 * j.conflict, 100 * j.map_agree);
+}
+
+/// A hypothesis of this spot as an estimate.
+PoseEstimate estimate_of(const Spot& spot, const Hypothesis& hypothesis) {
+  const Pose& T = hypothesis.T_map_sensor();
+  return {T, pose_covariance(spot.problem().target, spot.query(), T)};
+}
+
+/// Whether refinement has left the prediction by more than chance and the judge sees no reason for it: surfaces
+/// that hardly hold a pose let it slide.
+bool idly_elsewhere(const Spot& spot, const Hypothesis& here, const PoseEstimate& seen,
+                    const PoseEstimate& predicted) {
+  if (surprise_of(predicted, seen) <= kMostSurprise) return false;
+  const Judgement stayed = judge(spot.problem().target, spot.query(), spot.query().medium,
+                                 predicted.T_map_sensor, spot.problem().judging.fine_tolerance_m);
+  return here.judgement.score < stayed.score + SettleOptions{}.as_good;
+}
+
+/// How much of a view is new after a motion, 0..1.
+double novelty_of(const Pose& motion, const PlaceGate& view) {
+  const auto square = [](double x) { return x * x; };
+  return 1 - std::exp(-square(motion.translation().norm() / view.distance_m) -
+                      square(angle_between_rad(Pose::Identity(), motion) / view.angle_rad));
+}
+
+void advise(const Advised& advised, SpotReply* reply) {
+  reply->advice = advised.advice;
+  reply->text = advised.text + "; " + reply->text;
+}
+
+void refuse(const Advised& advised, SpotReply* reply) {
+  reply->status = SpotStatus::refused;
+  reply->reason = Reason::not_found;
+  reply->advice = advised.advice;
+  reply->text = advised.text;
+}
+
+void conclude(SpotStatus status, Reason reason, SpotReply* reply) {
+  reply->status = status;
+  reply->reason = reason;
+}
+
+}  // namespace
+
+void DeviceSession::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
+                           SpotReply* reply) {
+  evidence_ = {};
+  if (request.cold) return answer_cold(spot, reply);
+  if (!segment_ || request.odom_segment != segment_->id) segment_.emplace(request.odom_segment, verify_.tracks);
+  if (options_.verify_or_default() != Verify::tracks) return answer_as_paper(spot, reply);
+  if (segment_->followed) return answer_following(request, spot, reply);
+  answer_searching(spot, reply);
+}
+
+/// Searches the whole room from this spot and lets all tracks weigh it. `followed`: what a believed pose looks
+/// like here; it competes. Empty: nothing was found.
+std::optional<DeviceSession::Found> DeviceSession::search_room(const std::shared_ptr<const Spot>& spot,
+                                                               Tracks* tracks, const Hypothesis* followed) {
+  std::vector<Hypothesis> found = search(*spot, options_);
+  if (found.empty()) return std::nullopt;
+  const double margin = margin_of(found);
+  const Pose own = found.front().T_map_sensor();
+  const auto known = [&](const Hypothesis& h) {
+    return same_place(h.T_map_sensor(), followed->T_map_sensor());
+  };
+  if (followed != nullptr && std::ranges::none_of(found, known)) found.push_back(*followed);
+  tracks->add(spot, found);
+  const Track& best = tracks->best_first().front();
+  Found result;
+  result.best = best.latest;
+  result.stayed = best.fits;
+  result.estimate = estimate_of(*spot, best.latest);
+  if (!result.stayed) result.estimate.T_map_sensor = best.T_map_odom * spot->T_odom_sensor();
+  result.margin = margin;
+  result.own = same_place(own, result.estimate.T_map_sensor);
+  evidence_.places = tracks->evidence(result.estimate.sd_m());
+  for (const Track& track : tracks->best_first())
+    evidence_.T_map_sensors.push_back(track.T_map_odom * spot->T_odom_sensor());
+  result.looks = evidence_.places.front().looks;
+  result.log_odds = evidence_.log_odds = log_odds_of(evidence_.places);
+  return result;
+}
+
+void DeviceSession::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  Tracks alone(verify_.tracks);
+  const auto found = search_room(spot, &alone);
+  if (!found) return refuse(advice_for(evidence_, {}), reply);
+  reply->confidence = probability_of(found->log_odds);
+  report(found->best, found->estimate, found->margin, reply);
+  if (options_.verify_or_default() != Verify::tracks || !enough(reply->confidence)) {
+    advise(advice_for(evidence_, found->best.judgement), reply);
+    return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  }
+  reply->T_map_odom = found->estimate.T_map_sensor * spot->T_odom_sensor().inverse();
+  conclude(SpotStatus::verified, Reason::conclusive, reply);
+}
+
+void DeviceSession::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  const auto found = search_room(spot, &segment_->tracks);
+  segment_->spots_since_search = 0;
+  if (!found) return refuse(advice_for(evidence_, {}), reply);
+  report(found->best, found->estimate, found->margin, reply);
+  reply->confidence = probability_of(found->log_odds);
+  if (found->stayed && enough(reply->confidence)) {
+    segment_->followed = begun(found->estimate, spot->T_odom_sensor(), found->log_odds, found->looks);
+    segment_->weak_in_a_row = 0;
+    reply->T_map_odom = found->estimate.T_map_sensor * spot->T_odom_sensor().inverse();
+    return conclude(SpotStatus::verified,
+                    segment_->tracks.searches() == 1 ? Reason::conclusive
+                    : found->own                     ? Reason::confirmed
+                                                     : Reason::corrected,
+                    reply);
+  }
+  const Advised advised = advice_for(evidence_, found->best.judgement);
+  advise(advised, reply);
+  conclude(SpotStatus::provisional,
+           advised.advice == Advice::wait ? Reason::awaiting_spots
+           : !found->own                  ? Reason::inconsistent
+                                          : Reason::ambiguous,
+           reply);
+}
+
+/// Refines the predicted pose and weighs the two; what the spot then shows there. Where free space contradicts
+/// the refinement the prediction is the better answer.
+Hypothesis DeviceSession::follow(const SpotRequest& request, const Spot& spot) {
+  Followed& followed = *segment_->followed;
+  const Pose T_before_now = followed.T_odom_sensor.inverse() * request.T_odom_sensor;
+  const double novelty = novelty_of(T_before_now, verify_.tracks.view);
+  followed.T_odom_sensor = request.T_odom_sensor;
+  followed.estimate =
+      carried(followed.estimate, T_before_now, std::max(request.odom_sd_rad, verify_.step_sd_rad),
+              std::max(request.odom_sd_m, verify_.step_sd_m));
+  const Pose predicted = followed.estimate.T_map_sensor;
+  // The prior holds what no surface shows and hardly weighs otherwise: the filter weighs afterwards.
+  const PosePrior prior{predicted, std::max(followed.estimate.sd_rad(), verify_.locked_sd_rad),
+                        std::max(followed.estimate.sd_m(), verify_.locked_sd_m), verify_.prior_residual_sd_m};
+  const auto stays = [&](const Hypothesis& h) {
+    return same_place(h.T_map_sensor(), predicted, verify_.tracks.gate);
+  };
+  Hypothesis here = refine_and_judge(spot.problem(), predicted, &prior);
+  if (!stays(here) || !fits(here, verify_.tracks)) here = settle(spot.problem(), predicted, std::move(here));
+  const bool stayed = stays(here), fitting = stayed && fits(here, verify_.tracks);
+  note_look(terms_of(here.judgement, fitting), stayed, novelty, &followed);
+  if (fitting) {
+    const PoseEstimate seen = estimate_of(spot, here);
+    if (!idly_elsewhere(spot, here, seen, followed.estimate))
+      followed.estimate = fused(followed.estimate, seen);
+  }
+  return here;
+}
+
+void DeviceSession::report_followed(const Hypothesis& here, SpotReply* reply) const {
+  const Followed& followed = *segment_->followed;
+  report(here, followed.estimate, 0, reply);
+  reply->confidence = confidence_of(followed);
+  reply->T_map_odom.reset();
+  if (!enough(reply->confidence)) return conclude(SpotStatus::provisional, Reason::weak, reply);
+  reply->T_map_odom = followed.estimate.T_map_sensor * followed.T_odom_sensor.inverse();
+  conclude(SpotStatus::verified, Reason::confirmed, reply);
+}
+
+/// A search of the whole room beside a pose that is followed: a device that was lifted and put elsewhere must
+/// not be believed for long.
+void DeviceSession::search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here,
+                                  SpotReply* reply) {
+  Followed& followed = *segment_->followed;
+  segment_->spots_since_search = 0;
+  const auto found = search_room(spot, &segment_->tracks, &here);
+  if (!found) return;
+  const bool elsewhere = !same_place(found->estimate.T_map_sensor, followed.estimate.T_map_sensor);
+  const bool weak = !reply->verified();
+  note_search(found->log_odds, elsewhere, &followed);
+  const bool moved = elsewhere && weak && found->stayed && enough(probability_of(found->log_odds));
+  if (moved) followed = begun(found->estimate, spot->T_odom_sensor(), found->log_odds, found->looks);
+  report_followed(moved ? found->best : here, reply);
+  reply->margin = found->margin;
+  if (moved && reply->verified()) reply->reason = Reason::corrected;
+}
+
+void DeviceSession::answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
+                                     SpotReply* reply) {
+  const Hypothesis here = follow(request, *spot);
+  report_followed(here, reply);
+  int& weak_in_a_row = segment_->weak_in_a_row;
+  weak_in_a_row = reply->verified() ? 0 : weak_in_a_row + 1;
+  if (weak_in_a_row == 1) segment_->tracks.clear();  // what odometry tied to the place before may be lost
+  if (++segment_->spots_since_search >= verify_.research_every || weak_in_a_row >= 2)
+    search_beside(spot, here, reply);
+  if (reply->verified()) return;
+  const bool searched = segment_->spots_since_search == 0;
+  advise(searched ? advice_for(evidence_, here.judgement) : advice_for(*segment_->followed, here.judgement),
+         reply);
+  if (segment_->followed->log_odds < 0) segment_->followed.reset();  // likelier wrong than right
+}
+
+void DeviceSession::answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  const auto found = search(*spot, options_);
+  if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
+  report(found.front(), estimate_of(*spot, found.front()), margin_of(found), reply);
+  const SpotPose own{found.front().T_map_sensor(), spot->T_odom_sensor()};
+  if (options_.verify_or_default() == Verify::none) {
+    reply->T_map_odom = own.T_map_sensor * own.T_odom_sensor.inverse();
+    return conclude(SpotStatus::verified, Reason::confirmed, reply);
+  }
+  auto& answers = segment_->own_answers;
+  answers.push_back(own);
+  if (answers.size() > 3) answers.pop_front();
+  if (answers.size() < 3) return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  const Verification v = verify({answers[0], answers[1], answers[2]}, verify_.equality);
+  if (v.verdict == Verdict::none) return conclude(SpotStatus::provisional, Reason::inconsistent, reply);
+  reply->T_map_odom = v.T_map_sensor[2] * own.T_odom_sensor.inverse();
+  reply->T_map_sensor = v.T_map_sensor[2];
+  conclude(SpotStatus::verified, v.wrong == std::size_t{2} ? Reason::corrected : Reason::confirmed, reply);
+}
+
+}  // namespace liloc

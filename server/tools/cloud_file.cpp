@@ -1,0 +1,98 @@
+#include "server/tools/cloud_file.hpp"
+
+#include <pcl/console/print.h>
+#include <pcl/io/pcd_io.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <exception>
+#include <optional>
+
+#include "server/tools/pcd_header.hpp"
+#include "server/tools/ply_file.hpp"
+#include "server/tools/scalar.hpp"
+
+namespace liloc::toolbox {
+namespace {
+
+/// The type that PCL's message names; PCD has it in TYPE and SIZE, which have been checked.
+std::optional<Scalar> scalar_of(std::uint8_t datatype) {
+  switch (datatype) {
+    case pcl::PCLPointField::INT8:
+      return Scalar::i8;
+    case pcl::PCLPointField::UINT8:
+      return Scalar::u8;
+    case pcl::PCLPointField::INT16:
+      return Scalar::i16;
+    case pcl::PCLPointField::UINT16:
+      return Scalar::u16;
+    case pcl::PCLPointField::INT32:
+      return Scalar::i32;
+    case pcl::PCLPointField::UINT32:
+      return Scalar::u32;
+    case pcl::PCLPointField::FLOAT32:
+      return Scalar::f32;
+    case pcl::PCLPointField::FLOAT64:
+      return Scalar::f64;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// x, y and z of every point as they are stored: PCL's own conversion takes an axis of another type for zero.
+Result<Cloud> points_of(const pcl::PCLPointCloud2& stored, const std::string& name) {
+  std::array<std::pair<Scalar, std::size_t>, 3> axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string wanted(1, "xyz"[axis]);
+    const auto field = std::ranges::find(stored.fields, wanted, &pcl::PCLPointField::name);
+    const auto type = field == stored.fields.end() ? std::nullopt : scalar_of(field->datatype);
+    if (!type || field->offset + bytes_of(*type) > stored.point_step)
+      return fail("{}: its field {} has a type that is not read; write it as F 4 or F 8", name, wanted);
+    axes.at(axis) = {*type, field->offset};
+  }
+  const std::size_t count = std::size_t{stored.width} * stored.height;
+  if (stored.data.size() < count * stored.point_step) return fail("{}: is cut short; write it anew", name);
+  Cloud cloud;
+  cloud.points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* point = reinterpret_cast<const char*>(stored.data.data()) + i * stored.point_step;
+    Eigen::Vector3d p;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[static_cast<int>(axis)] = read_scalar(axes.at(axis).first, point + axes.at(axis).second, false);
+    if (p.cast<float>().allFinite()) cloud.points.emplace_back(p.cast<float>());
+  }
+  return cloud;
+}
+
+Result<Cloud> read_pcd(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  if (auto status = check_pcd_header(file); !status) return tl::unexpected(status.error());
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // our own line says it
+  pcl::PCLPointCloud2 stored;
+  try {
+    if (pcl::io::loadPCDFile(name, stored) < 0) return fail("{}: is no sound pcd file; write it anew", name);
+  } catch (const std::exception& trouble) {
+    return fail("{}: is no sound pcd file ({}); write it anew", name, trouble.what());
+  }
+  return points_of(stored, name);
+}
+
+}  // namespace
+
+Result<Cloud> read_cloud_file(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::string kind = file.extension().string();
+  std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (kind != ".ply" && kind != ".pcd")
+    return fail("{}: is neither .ply nor .pcd; convert it to one of them", name);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    return fail("{}: is no readable file; check the path", name);
+  auto cloud = kind == ".ply" ? read_ply(file) : read_pcd(file);
+  if (!cloud) return cloud;
+  if (cloud->empty()) return fail("{}: has no finite point; is it the right file?", name);
+  return cloud;
+}
+
+}  // namespace liloc::toolbox

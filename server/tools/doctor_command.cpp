@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "common/command/checks.hpp"
+#include "common/recording/recording.hpp"
+#include "server/tools/command.hpp"
+#include "server/tools/diagnosis.hpp"
+
+namespace liloc::toolbox {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kSecondServer = 1500ms;  // a status comes every second: so long after the first all have spoken
+
+struct DoctorArguments {
+  wire::DomainOptions seat;
+  std::string site_file, device_file;
+  double seconds = 5;
+};
+
+std::optional<long> setting(const std::string& file) {
+  std::ifstream in(file);
+  long value = 0;
+  return in >> value ? std::optional(value) : std::nullopt;
+}
+
+/// The newest status of each server.
+Result<std::vector<wire::ServerStatus>> listen(const DoctorArguments& arguments) {
+  const auto participant = wire::Participant::create(arguments.seat);
+  if (!participant) return tl::unexpected(participant.error());
+  auto dispatcher = wire::Dispatcher::create(*participant);
+  if (!dispatcher) return tl::unexpected(dispatcher.error());
+  std::mutex mutex;
+  std::map<std::string, wire::ServerStatus> heard;
+  const Status subscribed = wire::subscribe_status(**dispatcher, [&](Result<wire::ServerStatus> status) {
+    const std::scoped_lock lock(mutex);
+    if (status) heard[status->server_id] = std::move(*status);
+  });
+  if (!subscribed) return tl::unexpected(subscribed.error());
+  (*dispatcher)->start();
+  ProgressBar progress("doctor listens");
+  double first_ms = -1;
+  for (const Stopwatch watch; watch.elapsed_ms() < 1e3 * arguments.seconds; std::this_thread::sleep_for(20ms)) {
+    progress.show(watch.elapsed_ms() / (1e3 * arguments.seconds));
+    const std::scoped_lock lock(mutex);
+    if (first_ms < 0 && !heard.empty()) first_ms = watch.elapsed_ms();
+    if (first_ms >= 0 && watch.elapsed_ms() - first_ms > kSecondServer.count()) break;
+  }
+  (*dispatcher)->stop();
+  std::vector<wire::ServerStatus> servers;
+  for (auto& [id, status] : heard) servers.push_back(std::move(status));
+  return servers;
+}
+
+/// Whether a file can be read, and what it holds.
+template <class T, class Describe>
+std::optional<T> read(const std::string& file, Result<T> (*reader)(const std::filesystem::path&),
+                      std::vector<Finding>& findings, Describe describe) {
+  if (file.empty()) return std::nullopt;
+  const auto content = reader(file);
+  if (!content) {
+    findings.push_back({Verdict::bad, content.error().message});
+    return std::nullopt;
+  }
+  findings.push_back({Verdict::good, fmt::format("{}: {}", file, describe(*content))});
+  return *content;
+}
+
+int run(const DoctorArguments& arguments) {
+  std::vector<Finding> findings{
+      check_setting("net.core.rmem_max", setting("/proc/sys/net/core/rmem_max"), 4'194'304),
+      check_setting("net.core.wmem_max", setting("/proc/sys/net/core/wmem_max"), 1'048'576)};
+  const auto site = read<Site>(arguments.site_file, read_site, findings, [](const Site& s) {
+    return fmt::format("{} ceiling LiDARs", s.global_lidars.size());
+  });
+  read<DeviceInfo>(arguments.device_file, read_device, findings, [](const DeviceInfo& d) {
+    return fmt::format("{}, {}x{}, {}", d.id, d.camera.width, d.camera.height,
+                       d.T_imu_sensor ? "with IMU" : "without IMU");
+  });
+  const auto servers = listen(arguments);
+  if (!servers) {
+    findings.push_back({Verdict::bad, servers.error().message});
+  } else {
+    for (auto& finding : check_servers(*servers, site)) findings.push_back(std::move(finding));
+  }
+  for (const Finding& finding : findings) fmt::print("{}\n", line_of(finding));
+  return std::ranges::any_of(findings, [](const Finding& f) { return f.verdict == Verdict::bad; }) ? kFailed
+                                                                                                   : kDone;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<DoctorArguments>();
+  CLI::App* command = app.add_subcommand(
+      "doctor", "Look for what keeps devices from being located: kernel, files, servers, ceiling LiDARs");
+  command->add_option("--domain", arguments->seat.domain, "DDS domain")
+      ->check(command::in_range(0, 230))
+      ->capture_default_str();
+  command->add_option("--interface", arguments->seat.interface, "Network interface: name, address or auto")
+      ->capture_default_str();
+  command->add_option("--peer", arguments->seat.peers, "Host of a server; default: this one");
+  command->add_option("--site", arguments->site_file, "site.json that the server should serve");
+  command->add_option("--device", arguments->device_file, "device.json to check");
+  command->add_option("--seconds", arguments->seconds, "Longest time to listen for a server")
+      ->check(command::in_range(0.1, 600.0))
+      ->capture_default_str();
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace liloc::toolbox

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "client/engine/engine_options.hpp"
 #include "client/engine/pose_doubt.hpp"
 #include "client/odometry/odometry.hpp"
 

@@ -79,7 +79,7 @@ enum class Reason : std::uint8_t {
   no_gpc = 20,        ///< refused: no global cloud within 100 ms of the request's stamp
   not_found = 21,     ///< refused: no candidate pose was acceptable
   superseded = 22,    ///< refused: a newer request of the same client took its place
-  overloaded = 23,    ///< refused: the queue was full
+  overloaded = 23,    ///< refused: the queue was full, or a search took too long
   late = 24,          ///< refused: older than the client's last answered request
   bad_request = 25,   ///< refused: a value out of range; `text` names it
   bad_cloud = 26,     ///< refused: the LPC could not be decoded, or has too few points

@@ -53,13 +53,6 @@ void advise(const Advised& advised, SpotReply* reply) {
   reply->text = advised.text + "; " + reply->text;
 }
 
-void refuse(const Advised& advised, SpotReply* reply) {
-  reply->status = SpotStatus::refused;
-  reply->reason = Reason::not_found;
-  reply->advice = advised.advice;
-  reply->text = advised.text;
-}
-
 void conclude(SpotStatus status, Reason reason, SpotReply* reply) {
   reply->status = status;
   reply->reason = reason;
@@ -67,22 +60,39 @@ void conclude(SpotStatus status, Reason reason, SpotReply* reply) {
 
 }  // namespace
 
-void DeviceSession::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                           SpotReply* reply) {
-  evidence_ = {};
+/// After a search that came to nothing.
+void DeviceSession::refuse(const Found& found, SpotReply* reply) {
+  const bool cut_off = found.outcome == Found::Outcome::cut_off;
+  const Advised advised =
+      cut_off ? Advised{Advice::wait,
+                        "the search took too long and was cut off: the server is too busy or too slow"}
+              : advice_for(found.evidence, {});
+  conclude(SpotStatus::refused, cut_off ? Reason::overloaded : Reason::not_found, reply);
+  reply->advice = advised.advice;
+  reply->text = advised.text;
+}
+
+Evidence DeviceSession::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
+                               SpotReply* reply) {
   if (request.cold) return answer_cold(spot, reply);
   if (!segment_ || request.odom_segment != segment_->id) segment_.emplace(request.odom_segment, verify_.tracks);
-  if (options_.verify_or_default() != Verify::tracks) return answer_as_paper(spot, reply);
+  if (options_.verify_or_default() != Verify::tracks) {
+    answer_as_paper(spot, reply);
+    return {};
+  }
   if (segment_->followed) return answer_following(request, spot, reply);
-  answer_searching(spot, reply);
+  return answer_searching(spot, reply);
 }
 
 /// Searches the whole room from this spot and lets all tracks weigh it. `followed`: what a believed pose looks
-/// like here; it competes. Empty: nothing was found.
-std::optional<DeviceSession::Found> DeviceSession::search_room(const std::shared_ptr<const Spot>& spot,
-                                                               Tracks* tracks, const Hypothesis* followed) {
-  std::vector<Hypothesis> found = search(*spot, options_);
-  if (found.empty()) return std::nullopt;
+/// like here; it competes.
+DeviceSession::Found DeviceSession::search_room(const std::shared_ptr<const Spot>& spot, Tracks* tracks,
+                                                const Hypothesis* followed) {
+  auto [found, cut_off] = search(*spot, options_);
+  Found result;
+  if (cut_off) result.outcome = Found::Outcome::cut_off;
+  if (found.empty()) return result;
+  result.outcome = Found::Outcome::place;
   const double margin = margin_of(found);
   const Pose own = found.front().T_map_sensor();
   const auto known = [&](const Hypothesis& h) {
@@ -91,58 +101,66 @@ std::optional<DeviceSession::Found> DeviceSession::search_room(const std::shared
   if (followed != nullptr && std::ranges::none_of(found, known)) found.push_back(*followed);
   tracks->add(spot, found);
   const Track& best = tracks->best_first().front();
-  Found result;
   result.best = best.latest;
   result.stayed = best.fits;
   result.estimate = estimate_of(*spot, best.latest);
   if (!result.stayed) result.estimate.T_map_sensor = best.T_map_odom * spot->T_odom_sensor();
   result.margin = margin;
   result.own = same_place(own, result.estimate.T_map_sensor);
-  evidence_.places = tracks->evidence(result.estimate.sd_m());
+  result.evidence.places = tracks->evidence(result.estimate.sd_m());
   for (const Track& track : tracks->best_first())
-    evidence_.T_map_sensors.push_back(track.T_map_odom * spot->T_odom_sensor());
-  result.looks = evidence_.places.front().looks;
-  result.log_odds = evidence_.log_odds = log_odds_of(evidence_.places);
+    result.evidence.T_map_sensors.push_back(track.T_map_odom * spot->T_odom_sensor());
+  result.evidence.log_odds = log_odds_of(result.evidence.places);
   return result;
 }
 
-void DeviceSession::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+Evidence DeviceSession::answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
   Tracks alone(verify_.tracks);
-  const auto found = search_room(spot, &alone);
-  if (!found) return refuse(advice_for(evidence_, {}), reply);
-  reply->confidence = probability_of(found->log_odds);
-  report(found->best, found->estimate, found->margin, reply);
-  if (options_.verify_or_default() != Verify::tracks || !enough(reply->confidence)) {
-    advise(advice_for(evidence_, found->best.judgement), reply);
-    return conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  Found found = search_room(spot, &alone);
+  if (!found) {
+    refuse(found, reply);
+    return {};
   }
-  reply->T_map_odom = found->estimate.T_map_sensor * spot->T_odom_sensor().inverse();
-  conclude(SpotStatus::verified, Reason::conclusive, reply);
+  reply->confidence = probability_of(found.evidence.log_odds);
+  report(found.best, found.estimate, found.margin, reply);
+  if (options_.verify_or_default() == Verify::tracks && enough(reply->confidence)) {
+    reply->T_map_odom = found.estimate.T_map_sensor * spot->T_odom_sensor().inverse();
+    conclude(SpotStatus::verified, Reason::conclusive, reply);
+  } else {
+    advise(advice_for(found.evidence, found.best.judgement), reply);
+    conclude(SpotStatus::provisional, Reason::awaiting_spots, reply);
+  }
+  return std::move(found.evidence);
 }
 
-void DeviceSession::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
-  const auto found = search_room(spot, &segment_->tracks);
+Evidence DeviceSession::answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
+  Found found = search_room(spot, &segment_->tracks);
   segment_->spots_since_search = 0;
-  if (!found) return refuse(advice_for(evidence_, {}), reply);
-  report(found->best, found->estimate, found->margin, reply);
-  reply->confidence = probability_of(found->log_odds);
-  if (found->stayed && enough(reply->confidence)) {
-    segment_->followed = begun(found->estimate, spot->T_odom_sensor(), found->log_odds, found->looks);
-    segment_->weak_in_a_row = 0;
-    reply->T_map_odom = found->estimate.T_map_sensor * spot->T_odom_sensor().inverse();
-    return conclude(SpotStatus::verified,
-                    segment_->tracks.searches() == 1 ? Reason::conclusive
-                    : found->own                     ? Reason::confirmed
-                                                     : Reason::corrected,
-                    reply);
+  if (!found) {
+    refuse(found, reply);
+    return {};
   }
-  const Advised advised = advice_for(evidence_, found->best.judgement);
-  advise(advised, reply);
-  conclude(SpotStatus::provisional,
-           advised.advice == Advice::wait ? Reason::awaiting_spots
-           : !found->own                  ? Reason::inconsistent
-                                          : Reason::ambiguous,
-           reply);
+  report(found.best, found.estimate, found.margin, reply);
+  reply->confidence = probability_of(found.evidence.log_odds);
+  if (found.stayed && enough(reply->confidence)) {
+    segment_->followed = begun(found.estimate, spot->T_odom_sensor(), found.evidence.log_odds, found.looks());
+    segment_->weak_in_a_row = 0;
+    reply->T_map_odom = found.estimate.T_map_sensor * spot->T_odom_sensor().inverse();
+    conclude(SpotStatus::verified,
+             segment_->tracks.searches() == 1 ? Reason::conclusive
+             : found.own                      ? Reason::confirmed
+                                              : Reason::corrected,
+             reply);
+  } else {
+    const Advised advised = advice_for(found.evidence, found.best.judgement);
+    advise(advised, reply);
+    conclude(SpotStatus::provisional,
+             advised.advice == Advice::wait ? Reason::awaiting_spots
+             : !found.own                   ? Reason::inconsistent
+                                            : Reason::ambiguous,
+             reply);
+  }
+  return std::move(found.evidence);
 }
 
 /// Refines the predicted pose and weighs the two; what the spot then shows there. Where free space contradicts
@@ -186,40 +204,45 @@ void DeviceSession::report_followed(const Hypothesis& here, SpotReply* reply) co
 
 /// A search of the whole room beside a pose that is followed: a device that was lifted and put elsewhere must
 /// not be believed for long.
-void DeviceSession::search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here,
-                                  SpotReply* reply) {
+DeviceSession::Found DeviceSession::search_beside(const std::shared_ptr<const Spot>& spot,
+                                                  const Hypothesis& here, SpotReply* reply) {
   Followed& followed = *segment_->followed;
   segment_->spots_since_search = 0;
-  const auto found = search_room(spot, &segment_->tracks, &here);
-  if (!found) return;
-  const bool elsewhere = !same_place(found->estimate.T_map_sensor, followed.estimate.T_map_sensor);
+  Found found = search_room(spot, &segment_->tracks, &here);
+  if (!found) return found;
+  const double log_odds = found.evidence.log_odds;
+  const bool elsewhere = !same_place(found.estimate.T_map_sensor, followed.estimate.T_map_sensor);
   const bool weak = !reply->verified();
-  note_search(found->log_odds, elsewhere, &followed);
-  const bool moved = elsewhere && weak && found->stayed && enough(probability_of(found->log_odds));
-  if (moved) followed = begun(found->estimate, spot->T_odom_sensor(), found->log_odds, found->looks);
-  report_followed(moved ? found->best : here, reply);
-  reply->margin = found->margin;
+  note_search(log_odds, elsewhere, &followed);
+  const bool moved = elsewhere && weak && found.stayed && enough(probability_of(log_odds));
+  if (moved) followed = begun(found.estimate, spot->T_odom_sensor(), log_odds, found.looks());
+  report_followed(moved ? found.best : here, reply);
+  reply->margin = found.margin;
   if (moved && reply->verified()) reply->reason = Reason::corrected;
+  return found;
 }
 
-void DeviceSession::answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                                     SpotReply* reply) {
+Evidence DeviceSession::answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
+                                         SpotReply* reply) {
   const Hypothesis here = follow(request, *spot);
   report_followed(here, reply);
   int& weak_in_a_row = segment_->weak_in_a_row;
   weak_in_a_row = reply->verified() ? 0 : weak_in_a_row + 1;
   if (weak_in_a_row == 1) segment_->tracks.clear();  // what odometry tied to the place before may be lost
+  std::optional<Found> found;
   if (++segment_->spots_since_search >= verify_.research_every || weak_in_a_row >= 2)
-    search_beside(spot, here, reply);
-  if (reply->verified()) return;
-  const bool searched = segment_->spots_since_search == 0;
-  advise(searched ? advice_for(evidence_, here.judgement) : advice_for(*segment_->followed, here.judgement),
-         reply);
-  if (segment_->followed->log_odds < 0) segment_->followed.reset();  // likelier wrong than right
+    found = search_beside(spot, here, reply);
+  if (!reply->verified()) {
+    advise(
+        found ? advice_for(found->evidence, here.judgement) : advice_for(*segment_->followed, here.judgement),
+        reply);
+    if (segment_->followed->log_odds < 0) segment_->followed.reset();  // likelier wrong than right
+  }
+  return found ? std::move(found->evidence) : Evidence{};
 }
 
 void DeviceSession::answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply) {
-  const auto found = search(*spot, options_);
+  const std::vector<Hypothesis> found = search(*spot, options_).found;
   if (found.empty()) return conclude(SpotStatus::refused, Reason::not_found, reply);
   report(found.front(), estimate_of(*spot, found.front()), margin_of(found), reply);
   const SpotPose own{found.front().T_map_sensor(), spot->T_odom_sensor()};

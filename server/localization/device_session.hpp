@@ -16,10 +16,9 @@ class DeviceSession {
 
   std::mutex mutex;
 
-  /// Fills status, reason, advice, pose, confidence and evidence of the reply.
-  void answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply);
-  /// What the newest search rested on; no places where the newest spot needed none.
-  [[nodiscard]] const Evidence& evidence() const { return evidence_; }
+  /// Fills status, reason, advice, pose and confidence of the reply. Returns what the search of the room rested
+  /// on; no places where this spot needed none.
+  Evidence answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply);
 
  private:
   /// What belongs to one segment of the device's odometry.
@@ -33,28 +32,33 @@ class DeviceSession {
   };
   /// What a search of the room came to.
   struct Found {
-    Hypothesis best;  ///< at this spot, of the best track
+    enum class Outcome { place, nothing_fits, cut_off } outcome = Outcome::nothing_fits;
+    Evidence evidence;
+    Hypothesis best;  ///< at this spot, of the best track; this and what follows only where there is a place
     PoseEstimate estimate;
-    LookTerms looks;
-    double log_odds = 0, margin = 0;
+    double margin = 0;
     bool stayed = false, own = false;  ///< refinement stays with it; this spot's own search came to it
+
+    [[nodiscard]] explicit operator bool() const { return outcome == Outcome::place; }
+    [[nodiscard]] const LookTerms& looks() const { return evidence.places.front().looks; }
   };
 
-  void answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
-  void answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
-  void answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply);
+  Evidence answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
+  Evidence answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
+  Evidence answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
+                            SpotReply* reply);
   void answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
-  std::optional<Found> search_room(const std::shared_ptr<const Spot>& spot, Tracks* tracks,
-                                   const Hypothesis* followed = nullptr);
+  static void refuse(const Found& found, SpotReply* reply);
+  Found search_room(const std::shared_ptr<const Spot>& spot, Tracks* tracks,
+                    const Hypothesis* followed = nullptr);
   Hypothesis follow(const SpotRequest& request, const Spot& spot);
-  void search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here, SpotReply* reply);
+  Found search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here, SpotReply* reply);
   void report_followed(const Hypothesis& here, SpotReply* reply) const;
   [[nodiscard]] bool enough(double confidence) const { return confidence >= least_confidence(verify_.risk); }
 
   const LocalizerOptions options_;
   VerifyOptions verify_;
   std::optional<Segment> segment_;
-  Evidence evidence_;
 };
 
 }  // namespace liloc

@@ -115,8 +115,8 @@ double margin_of(const std::vector<Hypothesis>& hypotheses) {
   return std::clamp(1.0 - hypotheses[1].judgement.score / hypotheses[0].judgement.score, 0.0, 1.0);
 }
 
-std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options) {
-  if (options.method != Method::liloc) return search_as_paper(spot, options);
+RoomSearch search(const Spot& spot, const LocalizerOptions& options) {
+  if (options.method != Method::liloc) return {search_as_paper(spot, options)};
   const SpotProblem& problem = spot.problem();
   std::vector<Hypothesis> found;
   for (const UpPair& up : ups_to_try(problem)) {
@@ -126,16 +126,16 @@ std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options
       log::warning(
           "a search was cut off after {:.1f} s and is not believed: what it did not reach may look alike",
           std::chrono::duration<double>(problem.search_limit).count());
-      return {};
+      return {{}, true};
     }
     found = merged(std::move(found), judge_candidates(problem, candidates));
-    if (up.borne_out && !found.empty()) return found;  // every place was looked at; features never won there
+    if (up.borne_out && !found.empty()) return {found};  // every place was looked at; features never won there
   }
-  if (convincing(found)) return found;
+  if (convincing(found)) return {found};
   const FeatureProposer features(feature_search_of(problem, options.voxel_size_m));
   std::vector<Hypothesis> by_features = judge_candidates(problem, features.propose(problem));
   std::erase_if(by_features, [&](const Hypothesis& h) { return !spot.plausible(h); });
-  return merged(std::move(found), by_features);
+  return {merged(std::move(found), by_features)};
 }
 
 }  // namespace liloc

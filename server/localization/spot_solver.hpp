@@ -47,10 +47,16 @@ class Spot {
   std::optional<SpotProblem> problem_;
 };
 
+/// What a search of the whole room came to.
+struct RoomSearch {
+  std::vector<Hypothesis> found;  ///< distinct, best first; may be empty
+  bool cut_off = false;  ///< by the time limit: nothing is believed, what was not reached may look alike
+};
+
 /// By the method of the options. `liloc`: everything is tried that the problem allows, cheapest first; features
 /// only when gravity alone is not convincing. The others: the paper's (grid-)RANSAC with ICP, best fitness
-/// first. Distinct hypotheses, best first; may be empty.
-[[nodiscard]] std::vector<Hypothesis> search(const Spot& spot, const LocalizerOptions& options);
+/// first.
+[[nodiscard]] RoomSearch search(const Spot& spot, const LocalizerOptions& options);
 
 /// Share by which the best score is above the second's, 0..1; 1 when it is alone.
 [[nodiscard]] double margin_of(const std::vector<Hypothesis>& hypotheses);

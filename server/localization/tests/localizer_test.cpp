@@ -103,7 +103,8 @@ TEST(Localizer, ASearchThatWasCutOffIsNotBelieved) {
   for (int k = 0; k < 4; ++k) {
     const SpotReply reply = world.ask(k);
     EXPECT_EQ(reply.status, SpotStatus::refused) << "what it did not reach may look alike";
-    EXPECT_EQ(reply.reason, Reason::not_found);
+    EXPECT_EQ(reply.reason, Reason::overloaded);
+    EXPECT_THAT(reply.text, testing::HasSubstr("cut off"));
   }
 }
 

@@ -233,9 +233,10 @@ Evidence DeviceSession::answer_following(const SpotRequest& request, const std::
   if (++segment_->spots_since_search >= verify_.research_every || weak_in_a_row >= 2)
     found = search_beside(spot, here, reply);
   if (!reply->verified()) {
-    advise(
-        found ? advice_for(found->evidence, here.judgement) : advice_for(*segment_->followed, here.judgement),
-        reply);
+    const bool searched = found && found->outcome != Found::Outcome::cut_off;
+    advise(searched ? advice_for(found->evidence, here.judgement)
+                    : advice_for(*segment_->followed, here.judgement),
+           reply);
     if (segment_->followed->log_odds < 0) segment_->followed.reset();  // likelier wrong than right
   }
   return found ? std::move(found->evidence) : Evidence{};

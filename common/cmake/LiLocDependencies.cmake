@@ -13,9 +13,10 @@ find_package(draco REQUIRED)
 find_package(CycloneDDS 0.10.2 CONFIG REQUIRED)
 find_package(PCL 1.13 REQUIRED COMPONENTS common io kdtree search filters features registration octree)
 find_package(embree 3 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
 if(BUILD_TESTING)
   find_package(GTest REQUIRED)
-  find_package(benchmark REQUIRED)
 endif()
 
 # PCL's own variable drags VTK and Qt along; a room names the components it needs instead.

@@ -1,6 +1,7 @@
 // liloc-server: exit code 0 after an ordered stop, 1 when the network fails it, 2 for bad usage or a bad site.
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <systemd/sd-daemon.h>
 
 #include <exception>
 
@@ -53,7 +54,9 @@ int run(int argc, char** argv) {
   }
   log::info("{} serves {} with {} LiDARs on domain {}, interface {}", options->service.server_id,
             options->site_file, site->global_lidars.size(), options->seat.domain, options->seat.interface);
+  sd_notify(0, "READY=1");  // does nothing where systemd did not start it
   log::info("signal {}: stopping", signals.wait());
+  sd_notify(0, "STOPPING=1");
   (*server)->stop();
   const auto last = (*server)->status();
   log::info("stopped after {:.0f} s: {} answered, {} verified, {} refused", last.uptime_s, last.answered,

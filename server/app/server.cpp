@@ -1,5 +1,7 @@
 #include "server/app/server.hpp"
 
+#include <systemd/sd-daemon.h>
+
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
@@ -72,6 +74,8 @@ Status Server::open(const ServerOptions& options) {
   dispatcher_->every(std::chrono::seconds(1), [this] {
     if (auto sent = status_publisher_->publish(status()); !sent) log::warning("{}", sent.error().message);
   });
+  if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0)  // three words within the limit
+    dispatcher_->every(std::chrono::milliseconds(limit_us / 3000 + 1), [] { sd_notify(0, "WATCHDOG=1"); });
   if (options.status_every_s > 0)
     dispatcher_->every(std::chrono::milliseconds(static_cast<int>(options.status_every_s * 1e3) + 1),
                        [this] { log_status(); });

@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <spawn.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -78,6 +81,54 @@ TEST(Program, StopsInOrderOnEitherSignal) {
     EXPECT_EQ(kill(pid, signal), 0);
     EXPECT_EQ(exit_code(pid), 0);
   }
+  fs::remove(site);
+}
+
+/// The socket on which a service manager listens, and what it was told so far.
+class Manager {
+ public:
+  Manager() : path_(fs::temp_directory_path() / ("liloc_notify_" + std::to_string(getpid()))) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path_.string().copy(address.sun_path, sizeof(address.sun_path) - 1);
+    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    setenv("NOTIFY_SOCKET", path_.c_str(), 1);
+    setenv("WATCHDOG_USEC", "300000", 1);
+  }
+  ~Manager() {
+    unsetenv("NOTIFY_SOCKET");
+    unsetenv("WATCHDOG_USEC");
+    close(socket_);
+    fs::remove(path_);
+  }
+  Manager(const Manager&) = delete;
+  Manager& operator=(const Manager&) = delete;
+
+  /// Whether it is told `word` within ten seconds.
+  [[nodiscard]] bool hears(const std::string& word) {
+    for (int i = 0; i < 1000; ++i, std::this_thread::sleep_for(10ms)) {
+      std::array<char, 512> text{};
+      const auto size = recv(socket_, text.data(), text.size(), MSG_DONTWAIT);
+      if (size > 0 && std::string(text.data(), static_cast<std::size_t>(size)).find(word) != std::string::npos)
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  const fs::path path_;
+  const int socket_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+};
+
+TEST(Program, TellsTheServiceManagerThatItListensLivesAndStops) {
+  const fs::path site = site_file();
+  Manager manager;
+  const pid_t pid = spawn({"--site", site.string(), "--domain", "143"});
+  EXPECT_TRUE(manager.hears("READY=1"));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(manager.hears("WATCHDOG=1"));
+  kill(pid, SIGTERM);
+  EXPECT_TRUE(manager.hears("STOPPING=1"));
+  EXPECT_EQ(exit_code(pid), 0);
   fs::remove(site);
 }
 

@@ -21,7 +21,7 @@ constexpr double kGravity = 9.81;
 // What the filter starts from: m/s, rad/s, m/s^2.
 constexpr double kStoodVelocitySd = 0.05, kVagueVelocitySd = 0.5;
 constexpr double kCalibratedGyroSd = 5e-4, kCalibratedForceSd = 0.03;
-// What a blind stretch shows of the errors of velocity and gravity that matches had left: DECISIONS.md.
+// What a blind stretch shows of the errors of velocity and gravity that matches had left: client/inertial/DECISIONS.md.
 constexpr double kBlindVelocitySd = 0.04, kBlindAccelSd = 0.05;
 constexpr StampNs kLongestStepNs = from_ms(1000);
 

@@ -20,7 +20,7 @@ bool convincing(const std::vector<Hypothesis>& found) {
 }
 
 /// How features are searched: without gravity by samples of two normals, which find most in least time
-/// (common/registration/DECISIONS.md). What is kept of a cell is mostly of one place, and as many are proposed
+/// (common/registration/search/DECISIONS.md). What is kept of a cell is mostly of one place, and as many are proposed
 /// as are judged.
 FeatureSearchOptions feature_search_of(const SpotProblem& problem, double voxel_size_m) {
   FeatureSearchOptions features;

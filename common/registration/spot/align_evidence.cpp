@@ -7,7 +7,7 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kEvery = 3;  // of the target's points, for sketches
-// In pairs; both from 1 to 4 rank alike (DECISIONS.md).
+// In pairs; both from 1 to 4 rank alike (spot/DECISIONS.md).
 constexpr double kConflictPairs = 4, kMatchPairs = 2;
 constexpr double kMostConflict = 0.25;  // of points in known directions; right poses not yet refined have less
 // In voxels: how far a refined pose may put points before a surface; one that is not refined; features apart.

@@ -6,7 +6,7 @@
 namespace liloc::client::c_api {
 namespace {
 
-constexpr int kMaxDomain = 230;
+constexpr int kMaxDomain = 230;  // of DDS: ports of a higher domain exceed 65535
 
 liloc_pose to_c(const Pose& T) {
   liloc_pose pose{};

@@ -13,6 +13,7 @@ namespace liloc::client::c_api {
 /// Structures of the first release ended here: a smaller size is a caller's mistake. New fields begin beyond
 /// the old padding, which a caller need not have cleared.
 template <class T>
+// Of the first release's structure: fields from there on came later.
 constexpr std::size_t kFirstSize = sizeof(T);
 template <>
 constexpr inline std::size_t kFirstSize<liloc_client_options> = offsetof(liloc_client_options, request_bytes);

@@ -11,7 +11,7 @@
 namespace liloc::client {
 namespace {
 
-constexpr std::size_t kMostPoints = 4'000'000;
+constexpr std::size_t kMostPoints = 4'000'000;  // as in common/wire/convert_points.cpp
 
 Outcome<Taken> to_public(const Status& status) {
   return status ? Outcome<Taken>(Taken{}) : Outcome<Taken>::failed(status.error().message);

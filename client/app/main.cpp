@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kSummaryEvery = 10s;
+constexpr auto kSummaryEvery = 10s;  // by hand
 
 spdlog::level::level_enum as_spdlog(log::Level level) {
   switch (level) {

@@ -6,7 +6,7 @@ namespace liloc {
 
 Result<EncodedCloud> encode_within(std::size_t most_bytes, std::size_t most_points, double voxel_size_m,
                                    const std::function<Cloud(std::size_t most_points)>& thinned) {
-  constexpr double kSpare = 0.97;  // fewer points cost more bytes each: they lie farther apart
+  constexpr double kSpare = 0.97;  // fewer points cost more bytes each: they lie farther apart; by hand
   for (std::size_t points = most_points;;) {
     const Cloud cloud = thinned(points);
     auto encoded = encode(cloud, {.voxel_size_m = voxel_size_m});

@@ -17,11 +17,11 @@
 namespace liloc {
 namespace {
 
-constexpr int kSilentIntervals = 3;
-constexpr StampNs kToldFor = from_ms(3000);     // that the clock was set
+constexpr int kSilentIntervals = 3;             // without an answer, the server counts as silent; by hand
+constexpr StampNs kToldFor = from_ms(3000);     // that the clock was set; by hand
 constexpr StampNs kClosestFrames = from_ms(1);  // no depth sensor is as quick as that
-constexpr std::size_t kJudgedFrames = 3;
-constexpr std::size_t kFewestSurfels = 60;  // a frame with fewer cannot be matched
+constexpr std::size_t kJudgedFrames = 3;        // judge the unit of the stamps, by their mean rise; by hand
+constexpr std::size_t kFewestSurfels = 60;      // a frame with fewer cannot be matched; by hand
 
 OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
   OdometryOptions options;

@@ -10,12 +10,14 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct EngineOptions {
   std::string client_id;
   Camera camera;
   double min_range_m = 0.25, max_range_m = 8.5;
-  double voxel_size_m = 0.05;
-  StampNs interval_ns = from_ms(800);        ///< upper bound between global registrations (paper, section 5.3)
+  double voxel_size_m = 0.05;  ///< paper, section 3.1.5
+  StampNs interval_ns =
+      from_ms(800);  ///< upper bound between global registrations (paper, section 7.2, Table 5)
   StampNs reply_timeout_ns = from_ms(4000);  ///< a request without an answer for so long counts as unanswered
   LocalMethod local = LocalMethod::cloud;
   std::optional<Pose> T_imu_sensor;  ///< there is an IMU exactly where this is set
@@ -27,7 +29,8 @@ struct EngineOptions {
   /// Lower bound between registrations while nothing is verified; 0: a quarter of the interval. Cold: none.
   StampNs searching_interval_ns = 0;
   std::size_t request_bytes = 15'000;  ///< most, of a request's clouds: the surroundings give way first
-  /// Standard deviations beyond which the device is lost: the paper counts poses off by so much as wrong.
+  /// Standard deviations beyond which the device is lost: the paper counts poses off by so much as wrong
+  /// (section 3.1.2).
   double lost_sd_m = 0.3, lost_sd_rad = radians(10);
 };
 

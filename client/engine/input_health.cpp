@@ -10,8 +10,9 @@
 namespace liloc {
 namespace {
 
-constexpr int kEmptyFrames = 15;
-constexpr std::size_t kMatches = 60, kFewestMatches = 30;
+constexpr int kEmptyFrames = 15;                           // in a row; by hand
+constexpr std::size_t kMatches = 60, kFewestMatches = 30;  // by hand
+// 31 walks, DECISIONS.md.
 constexpr double kLargeStrain = 1.8;  // of 60 matches 12 exceeded it at most, where all was right ...
 constexpr std::ptrdiff_t kStrainedMatches = 24;  // ... and 20 to 60 with 10 % of focal length
 constexpr double kLargeResidual =

@@ -5,10 +5,10 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kMostAsked = 64;  // a minute at the usual interval; answers come within seconds
+constexpr std::size_t kMostAsked = 64;  // a minute at the usual interval; answers come within seconds; by hand
 // Of a device that people carry, over a stretch that the odometry could not bridge: MotionDoubt bounds it
 // alike.
-constexpr double kUnseenSpeed = 1.0, kUnseenTurn = 0.5;  // m/s, rad/s
+constexpr double kUnseenSpeed = 1.0, kUnseenTurn = 0.5;  // m/s, rad/s; by hand
 // Of odometry whose inputs contradict each other: who walks slowly while nothing is known. By hand: it must
 // reach `lost` within seconds, and not within an interval.
 constexpr double kContradictedSpeed = 0.2, kContradictedTurn = 0.1;  // m/s, rad/s

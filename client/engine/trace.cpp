@@ -7,6 +7,7 @@
 namespace liloc {
 namespace {
 
+// What the files' columns are: proto-tests/replay reads them.
 constexpr char kLocalHeader[] = "stamp_ns,informative,method,converged,latency_ms,tx,ty,tz,qx,qy,qz,qw";
 constexpr char kSpotsHeader[] =
     "stamp_ns,gpc_stamp_ns,status,verified,reason,tx,ty,tz,qx,qy,qz,qw,fitness,inlier_rmse_m,overlap,margin,"

@@ -8,19 +8,24 @@
 namespace liloc {
 namespace {
 
+// Ten samples at 200 Hz; by hand.
 constexpr double kLargestGapS = 0.05;  // between neighbouring samples, or from a span's end to the next sample
-constexpr double kQuick = 0.1;         // weight of a new sample in the smoothed values that judge stillness
-constexpr double kStandardGravity = 9.80665;
-constexpr int kUnitSamples = 20;  // judge the unit
+// Weight of a new sample in the smoothed values that judge stillness; by hand.
+constexpr double kQuick = 0.1;
+constexpr double kStandardGravity = 9.80665;  // m/s^2, by definition (CGPM 1901)
+constexpr int kUnitSamples = 20;              // judge the unit; by hand
+// In rad/s and m/s^2; by hand.
 constexpr double kLargeRate = 3,
                  kLargeForce = 15;  // a value that stays at exactly one this large is the range's end
 // What no such sensor measures: those of phones, robots and depth cameras end at 2000 degrees per second (35
 // rad/s) and 16 g (157 m/s^2), or at 32 g (314 m/s^2); twice the turn rate still leaves no sharp frame.
 constexpr double kMostRate = 50, kMostForce = 320;
-constexpr StampNs kWildFor = from_ms(3000);  // it is told
+constexpr StampNs kWildFor = from_ms(3000);  // it is told; by hand
+// No samples for so long are told; a clipped one leaves the IMU out for so long. By hand.
 constexpr StampNs kSilent = from_ms(500), kClippedFor = from_ms(3000);
-constexpr double kDoubtTimeConstantS = 0.5, kDoubtSdRad = 0.3;  // of "up" in that time
-constexpr int kMargin = 12;  // samples of context for the filters on either side of a span
+constexpr double kDoubtTimeConstantS = 0.5, kDoubtSdRad = 0.3;  // of "up" in that time; by hand
+// Samples of context for the filters on either side of a span; six standard deviations of the Gaussian filter.
+constexpr int kMargin = 12;
 
 }  // namespace
 

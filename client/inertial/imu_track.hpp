@@ -10,6 +10,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct ImuTrackOptions {
   double still_seconds = 0;        ///< the device is said to stand still for so long at the start
   double still_gyro_rad_s = 0.08;  ///< smoothed turn rate above which it does not stand still

@@ -10,17 +10,19 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kEarth = 9.81, kEarthSd = 0.03;       // on Earth, and what the accelerometer's scale adds
-constexpr double kAccelBiasSd = 0.1;                   // m/s^2, at the start
-constexpr double kGyroWalk = 5e-5, kAccelWalk = 1e-3;  // of the biases per square root of a second
-// Per span: clocks of camera and IMU, their mounting.
+// On Earth, and what the accelerometer's scale adds; by hand.
+constexpr double kEarth = 9.81, kEarthSd = 0.03;
+constexpr double kAccelBiasSd = 0.1;                   // m/s^2, at the start; by hand
+constexpr double kGyroWalk = 5e-5, kAccelWalk = 1e-3;  // of the biases per square root of a second; by hand
+// Per span: clocks of camera and IMU, their mounting. By hand.
 constexpr double kMountSdRad = 2e-4, kMountSdM = 5e-4;
 // Strain beyond which the predictions are doubted, and by which they are doubted in full: people push a device
-// about with so many m/s^2 and rad/s^2.
+// about with so many m/s^2 and rad/s^2. It never came to 2 in 33 walks (DECISIONS.md); the rest by hand.
 constexpr double kMostStrain = 2, kFullDoubt = 6, kDoubtAccel = 4, kDoubtTurn = 10;
-constexpr double kFade = 0.9;  // of the strain, per measurement
+constexpr double kFade = 0.9;  // of the strain, per measurement; by hand
+// In rad/s and m/s^2: what no sensor in order has; by hand.
 constexpr double kMostGyroBias = 0.1, kMostAccelBias = 0.5;
-constexpr double kPlacedSdRad = 0.01, kPlacedSdM = 0.02;
+constexpr double kPlacedSdRad = 0.01, kPlacedSdM = 0.02;  // of a pose that was found anew; by hand
 
 }  // namespace
 

@@ -27,6 +27,7 @@ struct InertialStart {
 /// errors turn on the left (odometry axes). Not thread-safe.
 class InertialFilter {
  public:
+  // Where the states begin.
   static constexpr int kTurn = 0, kPlace = 3, kVelocity = 6, kGyroBias = 9, kAccelBias = 12, kGravity = 15;
   using Matrix18d = Eigen::Matrix<double, 18, 18>;
 

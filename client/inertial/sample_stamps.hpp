@@ -5,7 +5,7 @@ namespace liloc {
 
 // No IMU or odometry has 50 000 samples a second; a driver that stamps as it reads may have a USB packet of
 // them that lie closer.
-constexpr StampNs kClosestSampleNs = 20'000;
-constexpr std::size_t kJudgedSamples = 20;
+constexpr StampNs kClosestSampleNs = 20'000;  // 50 kHz: no such IMU is as quick; by hand
+constexpr std::size_t kJudgedSamples = 20;    // by hand
 
 }  // namespace liloc

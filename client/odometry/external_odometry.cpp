@@ -8,7 +8,8 @@
 namespace liloc {
 namespace {
 
-constexpr double kGuessedSpeedError = 0.3, kGuessedTurnError = 0.3;  // m/s, rad/s: of a pose beyond the samples
+// In m/s, rad/s: of a pose beyond the samples; by hand.
+constexpr double kGuessedSpeedError = 0.3, kGuessedTurnError = 0.3;
 
 double share_of(StampNs from_ns, StampNs at_ns, StampNs to_ns) {
   return static_cast<double>(at_ns - from_ns) / static_cast<double>(to_ns - from_ns);

@@ -14,6 +14,7 @@ struct OdometrySample {
   std::optional<Matrix6d> covariance;  ///< of the pose, [rad; m]; its growth bounds the motion's error
 };
 
+/// Defaults are by hand where nothing else is said.
 struct ExternalOdometryOptions {
   Pose T_base_sensor = Pose::Identity();       ///< where the depth sensor sits on what the odometry moves
   StampNs keep_ns = from_ms(10'000);           ///< memory bound

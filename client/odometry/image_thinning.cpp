@@ -5,7 +5,7 @@
 namespace liloc {
 namespace {
 
-constexpr std::uint16_t kSaturated = 0xFFFF;
+constexpr std::uint16_t kSaturated = 0xFFFF;  // some cameras mark a missing return by it
 
 }  // namespace
 

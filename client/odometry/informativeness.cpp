@@ -9,7 +9,7 @@
 namespace liloc {
 namespace {
 
-constexpr int kStep = 4;  // every fourth pixel in both axes: 1200 of 320x240 give the spread to 1 %
+constexpr int kStep = 4;  // every fourth pixel in both axes: 1200 of 320x240 give the spread to 1 %; by hand
 
 FrameSpread measure(const DepthImage& image, const Camera& camera, double min_range_m, double max_range_m,
                     double near_m) {

@@ -7,6 +7,7 @@ namespace liloc {
 
 /// Limits found on simulated offices with people and a real kitchen; a handheld walk changes the spread by
 /// under 15 % from frame to frame, a hand before the lens by more than half.
+/// Defaults are by hand where nothing else is said.
 struct InformativenessOptions {
   double min_valid_share = 0.08;  ///< of the pixels with a return in range; fewer see nothing
   double min_sd_m = 0.05;         ///< a bare wall seen squarely spreads less

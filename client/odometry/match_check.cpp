@@ -5,12 +5,13 @@
 namespace liloc {
 namespace {
 
-constexpr double kVagueM = 0.15;  // a guess worse than that does not speak for a match
-// Where nobody moves the image looks through 0.2 % of the map at most.
+constexpr double kVagueM = 0.15;  // a guess worse than that does not speak for a match; by hand
+// Where nobody moves the image looks through 0.2 % of the map at most. By hand; what they mark: DECISIONS.md.
 constexpr double kMovingShare = 0.03, kWrongShare = 0.05;
-constexpr double kAmpleOverlap = 0.5;  // with less, a frame from somewhere within a metre fits in many places
-constexpr double kRefutedWeight = 2;   // overlap that a share of the map seen through takes
-constexpr double kPriorWeight = 0.03;  // and a squared deviation from the guess
+// With less, a frame from somewhere within a metre fits in many places; by hand.
+constexpr double kAmpleOverlap = 0.5;
+constexpr double kRefutedWeight = 2;   // overlap that a share of the map seen through takes; by hand
+constexpr double kPriorWeight = 0.03;  // and a squared deviation from the guess; by hand
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 namespace liloc {
 namespace {
 
-constexpr double kMostSpeedSd = 1, kMostTurnSd = 1.5;  // m/s, rad/s: devices that people carry
+constexpr double kMostSpeedSd = 1, kMostTurnSd = 1.5;  // m/s, rad/s: devices that people carry; by hand
 
 }  // namespace
 

@@ -6,23 +6,28 @@
 namespace liloc {
 namespace {
 
+// By hand, where nothing else is said.
+// Of the first, 1 and 2 lost (common/registration/scan/DECISIONS.md).
 constexpr double kAccelSd = 4.0;                        // m/s^2: how hard people push a device about
 constexpr double kTurnAccelSd = 10.0;                   // rad/s^2: the same in rotation, where no gyro tells
 constexpr double kStepSdRad = 0.003, kStepSdM = 0.002;  // of a guess without an IMU, at least ...
-constexpr double kMostSdRad = 1, kMostSdM = 2;          // ... and at most
-constexpr double kImuAccelSd = 0.4;                     // m/s^2: what is left of it after the accelerometer
-constexpr double kImuTurnAccelSd = 0.06;  // rad/s^2: the same after the gyro, in 15 frames a second
-constexpr double kVelocitySd = 0.05;      // m/s: of the velocity that a guess starts from
-constexpr double kGyroSd = 0.004;         // rad/s: noise, bias and timing together
+constexpr double kMostSdRad = 1, kMostSdM = 2;          // ... and at most; by hand
+// In m/s^2: what is left of it after the accelerometer; by hand.
+constexpr double kImuAccelSd = 0.4;
+constexpr double kImuTurnAccelSd = 0.06;  // rad/s^2: the same after the gyro, in 15 frames a second; by hand
+constexpr double kVelocitySd = 0.05;      // m/s: of the velocity that a guess starts from; by hand
+constexpr double kGyroSd = 0.004;         // rad/s: noise, bias and timing together; by hand
 constexpr double kStillSdRad = 1e-4, kStillSdM = 1e-3;  // of a frame's motion while the device stands still
 constexpr double kFadingS =
     0.4;  // without an IMU a motion that is no longer seen dies away with this time constant
-constexpr double kGravity = 9.81;
-// What the filter starts from: m/s, rad/s, m/s^2.
+constexpr double kGravity = 9.81;  // m/s^2, on Earth
+// What the filter starts from: m/s, rad/s, m/s^2. By hand.
 constexpr double kStoodVelocitySd = 0.05, kVagueVelocitySd = 0.5;
 constexpr double kCalibratedGyroSd = 5e-4, kCalibratedForceSd = 0.03;
-// What a blind stretch shows of the errors of velocity and gravity that matches had left: DECISIONS.md.
+// What a blind stretch shows of the errors of velocity and gravity that matches had left:
+// client/inertial/DECISIONS.md.
 constexpr double kBlindVelocitySd = 0.04, kBlindAccelSd = 0.05;
+// Of a frame to the next, over which a velocity still says something; by hand.
 constexpr StampNs kLongestStepNs = from_ms(1000);
 
 /// Turns errors of the IMU's pose into errors of the sensor's, odometry axes: `lever` leads from the sensor to

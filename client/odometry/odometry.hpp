@@ -9,6 +9,7 @@ namespace liloc {
 
 class MatchCheck;
 
+/// Defaults are by hand where nothing else is said.
 struct OdometryOptions {
   LocalMethod method = LocalMethod::cloud;
   Camera camera;  ///< of the images given to `step`

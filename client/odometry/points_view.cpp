@@ -7,7 +7,8 @@
 namespace liloc {
 namespace {
 
-constexpr double kOneSurface = 0.05;  // share of the depth by which neighbours on one surface may differ
+// Share of the depth by which neighbours on one surface may differ; by hand.
+constexpr double kOneSurface = 0.05;
 
 /// Between two returns of one surface their mean, otherwise nothing.
 std::uint16_t between(std::uint16_t a, std::uint16_t b) {

@@ -12,12 +12,13 @@ namespace {
 
 // The difference of two readings, sd at range z: at least a good time-of-flight sensor's, at most that of a
 // Kinect (quantization of 2.85 mm/m2 and noise; Khoshelham and Elberink 2012), with some to spare.
-constexpr double kLeastM = 0.003, kLeastPerM2 = 0.0003;
+constexpr double kLeastM = 0.003, kLeastPerM2 = 0.0003;  // by hand
+// Standard deviations: at most, and before anything is learned; by hand.
 constexpr double kMostM = 0.005, kMostPerM2 = 0.005;
 constexpr double kSdOfMedian = 1.4826;      // of normally distributed values, by the median of their size
 constexpr float kDown = 0.5F, kUp = 0.03F;  // per frame, by hand: quick to believe that it is quiet
-constexpr int kStep = 6;                    // every sixth pixel in both axes: 2100 of 320x240
-constexpr std::size_t kFewest = 20;         // pixels of a bin that have a median
+constexpr int kStep = 6;                    // every sixth pixel in both axes: 2100 of 320x240; by hand
+constexpr std::size_t kFewest = 20;         // pixels of a bin that have a median; by hand
 
 }  // namespace
 

@@ -9,15 +9,18 @@
 namespace liloc {
 namespace {
 
-constexpr int kIterations = 20'000;
-constexpr std::size_t kProposals = 12, kSparsePoints = 300;
-constexpr double kTurnStepRad = 0.2, kMostTurnRad = 0.8;  // a match finds its way from half of such a step
-constexpr double kShiftStepM = 0.3, kMostShiftM = 0.6;
-constexpr double kReachSds = 2;        // of the guess, that starts are spread over
-constexpr double kPriorWeight = 0.01;  // overlap that a match one such deviation off must gain
+constexpr int kIterations = 20'000;                          // samples of three points; by hand
+constexpr std::size_t kProposals = 12, kSparsePoints = 300;  // by hand
+// A match finds its way from half of such a step; by hand, DECISIONS.md.
+constexpr double kTurnStepRad = 0.2, kMostTurnRad = 0.8;
+constexpr double kShiftStepM = 0.3, kMostShiftM = 0.6;  // by hand, DECISIONS.md
+constexpr double kReachSds = 2;                         // of the guess, that starts are spread over; by hand
+constexpr double kPriorWeight = 0.01;  // overlap that a match one such deviation off must gain; by hand
+// Of a quick match, with so many surfels: twice of both is no better (DECISIONS.md).
 constexpr int kQuickIterations = 3;
 constexpr std::size_t kQuickSurfels = 100, kFullMatches = 5;
-constexpr double kStartSdRad = 0.1, kStartSdM = 0.15;  // of a proposal: what three matched points leave open
+// Of a proposal: what three matched points leave open; by hand.
+constexpr double kStartSdRad = 0.1, kStartSdM = 0.15;
 
 Cloud cloud_of(const std::vector<Surfel>& frame) {
   Cloud cloud;

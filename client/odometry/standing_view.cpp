@@ -11,7 +11,8 @@ namespace {
 
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
-constexpr int kCoarse = 8;            // every eighth pixel in both axes tells a device that surely moves
+// Every eighth pixel in both axes tells a device that surely moves; where nothing else is said: by hand.
+constexpr int kCoarse = 8;
 constexpr double kCoarseShare = 0.7;  // of the share that is asked for
 constexpr double kQuieter = 0.8;      // less noise than before shows more edges and fewer flat squares
 constexpr int kFewestPixels = 24;     // of a tile, that make a plane

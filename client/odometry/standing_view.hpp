@@ -6,6 +6,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct StandingOptions {
   int tile_px = 16;               ///< side of the squares that are judged together
   float deviations = 3;           ///< of the noise, within which a pixel has not changed

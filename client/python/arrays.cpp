@@ -9,6 +9,7 @@ namespace {
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Matrix3 = double[3][3];
 
+// Of R R^T from the identity: what doubles written as text keep; by hand.
 constexpr double kRotationTolerance = 1e-6;
 
 std::string shape_of(const py::array& array) {

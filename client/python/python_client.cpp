@@ -10,8 +10,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kSignalCheck = std::chrono::milliseconds(50);
-constexpr double kLongestWaitS = 1e6;  // more would overflow the clock
+constexpr auto kSignalCheck = std::chrono::milliseconds(50);  // so that Ctrl-C ends a wait; by hand
+constexpr double kLongestWaitS = 1e6;                         // more would overflow the clock
 
 thread_local int callbacks_deep = 0;
 

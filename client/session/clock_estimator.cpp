@@ -6,6 +6,7 @@
 namespace liloc {
 namespace {
 
+// Exchanges: about 20 s at the usual interval. By hand, as all here.
 constexpr std::size_t kWindow = 24, kFewest = 2;
 constexpr StampNs kSlowest = from_ms(2000);      // an exchange slower than this says nothing
 constexpr StampNs kGoodRoundTrip = from_ms(60);  // half of it is what the offset may be wrong by

@@ -9,9 +9,9 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kRecent = 31, kFewest = 5;
-constexpr StampNs kLate = from_ms(500);  // of what is older by more the clock was set
-constexpr double kSlack = 0.9;           // frames do not come at even distances
+constexpr std::size_t kRecent = 31, kFewest = 5;  // frames: two seconds at 15 Hz; by hand
+constexpr StampNs kLate = from_ms(500);  // of what is older by more the clock was set, as StampWatch has it
+constexpr double kSlack = 0.9;           // frames do not come at even distances; by hand
 
 }  // namespace
 

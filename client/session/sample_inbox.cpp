@@ -5,7 +5,7 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kMost = 4000;  // 20 s at 200 Hz, while no frame comes
+constexpr std::size_t kMost = 4000;  // 20 s at 200 Hz, while no frame comes; by hand
 
 template <class Sample>
 void push(std::deque<Sample>& samples, const Sample& sample) {

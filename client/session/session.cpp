@@ -16,8 +16,9 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits
-constexpr auto kOdometryWait = std::chrono::milliseconds(60);  // of a frame for the odometry of its stamp
+constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits; by hand
+// Of a frame for the odometry of its stamp; by hand.
+constexpr auto kOdometryWait = std::chrono::milliseconds(60);
 
 /// An image, or a cloud in its place.
 struct SensorFrame {

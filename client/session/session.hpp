@@ -8,6 +8,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct SessionOptions {
   EngineOptions engine;
   std::size_t queue_frames = 4;

@@ -9,10 +9,10 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kLatencies = 512;
-constexpr int kRefused = 3;                       // frames in a row: that is no hiccup
-constexpr auto kBlind = std::chrono::seconds(2);  // who is carried may be metres off by then
-constexpr StampNs kLongestStep = from_ms(1000);   // between frames that carry the pose on
+constexpr std::size_t kLatencies = 512;           // newest frames that the statistics are over; by hand
+constexpr int kRefused = 3;                       // frames in a row: that is no hiccup; by hand
+constexpr auto kBlind = std::chrono::seconds(2);  // who is carried may be metres off by then; by hand
+constexpr StampNs kLongestStep = from_ms(1000);   // between frames that carry the pose on; by hand
 
 const char* name_of(Tracking tracking) {
   switch (tracking) {

@@ -5,7 +5,7 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kLongestId = 63;
+constexpr std::size_t kLongestId = 63;  // as idl/liloc.idl has it
 
 bool allowed(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';

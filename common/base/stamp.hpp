@@ -7,7 +7,7 @@ namespace liloc {
 
 using StampNs = std::int64_t;
 
-constexpr double kNsPerSecond = 1e9;
+constexpr double kNsPerSecond = 1e9;  // by definition
 constexpr StampNs from_ms(double ms) {
   return static_cast<StampNs>(ms * 1e6);
 }

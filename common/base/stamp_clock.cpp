@@ -7,8 +7,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
+// The newest stamps count; after a silence they begin anew. By hand, as all here.
 constexpr auto kWindow = 10s, kSilence = 3s;
-constexpr std::size_t kMost = 256;
+constexpr std::size_t kMost = 256;       // memory bound
 constexpr StampNs kJump = from_ms(250);  // no delay of a frame changes by more
 constexpr int kLateOnes = 5;             // in a row: it is not a busy moment, the clock was set back
 

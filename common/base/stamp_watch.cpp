@@ -7,12 +7,13 @@
 namespace liloc {
 namespace {
 
-constexpr int kStrays = 3;  // in a row: the clock was set. Two may be a hiccup of the driver
+constexpr int kStrays = 3;  // in a row: the clock was set. Two may be a hiccup of the driver; by hand
 // Late ones of a stream are late by less; a clock set back by less has caught up as soon.
 constexpr StampNs kBack = from_ms(500);
 // Odometry does not bridge half of it; what is farther ahead may wait for two others to confirm it.
 constexpr StampNs kAhead = from_ms(10'000);
 constexpr double kRarest = 100 * kNsPerSecond;  // between two stamps of any stream, when units are guessed
+// By which stamps may differ from this computer's time and still be of its clock; by hand.
 constexpr double kHour = 3600 * kNsPerSecond;
 
 struct Unit {

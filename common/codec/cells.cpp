@@ -3,6 +3,7 @@
 namespace liloc::codec {
 namespace {
 
+// All but x; all but x and y.
 constexpr CellId kRow = ~((CellId{1} << kCellBits) - 1), kSlice = ~((CellId{1} << (2 * kCellBits)) - 1);
 
 /// Where the run of cells ends that agree with the first in the bits of `part`.

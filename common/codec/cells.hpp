@@ -10,6 +10,7 @@ namespace liloc::codec {
 /// A cell as one number that sorts by z, then y, then x. Coordinates are 0..2^18; one more is kept on either
 /// side, so that the number of a neighbour is the cell's plus a constant.
 using CellId = std::uint64_t;
+// Bits of an axis in an id, three of which fit 64; clouds are cut no finer than the depth.
 constexpr int kCellBits = 20, kMaxDepth = 18;
 
 [[nodiscard]] constexpr CellId cell_id(std::uint64_t x, std::uint64_t y, std::uint64_t z) {

@@ -15,6 +15,7 @@ namespace {
 // stands in it twice, and Draco writes as many points as the second says into room for the first; a decoder of
 // clouds from a network therefore takes this layout and no other.
 constexpr std::array<std::uint8_t, 11> kMagic = {'D', 'R', 'A', 'C', 'O', 2, 3, 0, 1, 0, 0};
+// Of Draco's own layout, as its encoder here writes it: one attribute of three floats, and where what stands.
 constexpr std::array<std::uint8_t, 7> kAttribute = {1, 1, 0, 9, 3, 0, 0};
 constexpr std::size_t kCountAt = 11, kAttributeAt = 15, kLevelAt = 22, kBitsAt = 23, kSecondCountAt = 27;
 constexpr std::size_t kHeaderBytes = 31;

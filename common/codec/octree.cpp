@@ -9,8 +9,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the header is copied as it lies in memory");
 
-constexpr std::array<std::uint8_t, 4> kMagic = {'L', 'O', 'C', '1'};
-constexpr int kMinDepth = 4, kMaxDepth = 12;
+constexpr std::array<std::uint8_t, 4> kMagic = {'L', 'O', 'C', '1'};  // our own format, version 1
+constexpr int kMinDepth = 4, kMaxDepth = 12;  // by hand about the paper's 8 (section 3.1.3)
 
 struct Header {
   std::array<std::uint8_t, 4> magic = kMagic;

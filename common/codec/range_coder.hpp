@@ -20,7 +20,7 @@ class BitModel {
   }
 
  private:
-  static constexpr std::int32_t kCertain = 65'500;
+  static constexpr std::int32_t kCertain = 65'500;  ///< of 65536: no bit is ever taken for certain; by hand
   /// A mean over the first bits, then over the last fifty; of 65536.
   static constexpr auto kRate = [] {
     std::array<std::int32_t, 49> rate{};

@@ -7,7 +7,7 @@
 
 namespace liloc::codec {
 
-constexpr int kMaxSteps = 64;
+constexpr int kMaxSteps = 64;  // an offset fits six bits
 
 /// `steps`: 1..kMaxSteps, into which a voxel's side is divided. Errors: a cloud that spans over 2^18 voxels.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_voxel(const Cloud& cloud, double voxel_size_m,

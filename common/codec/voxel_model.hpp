@@ -40,7 +40,7 @@ class OccupancyModel {
   }
 
  private:
-  static constexpr std::size_t kStates = 12;
+  static constexpr std::size_t kStates = 12;  ///< kinds of a neighbour, as `state` counts them
 
   static std::size_t context(unsigned child, unsigned mask, const std::array<int, 6>& outside) {
     std::array<std::size_t, 3> state{};
@@ -102,7 +102,7 @@ class OffsetModel {
   }
 
  private:
-  static constexpr int kPlaces = 9;
+  static constexpr int kPlaces = 9;  ///< kinds of neighbourhoods
   using Tree = std::array<BitModel, 2 * kMaxSteps>;
 
   /// By halving what is left of 0..steps; between the last two nothing is foretold.

@@ -108,7 +108,7 @@ class ProgramOptions::File : public CLI::ConfigTOML {
 
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return one_line(error.what());
-  constexpr std::size_t kShown = 3;
+  constexpr std::size_t kShown = 3;  // of unknown arguments; by hand
   const std::vector<std::string> unknown = app.remaining(true);
   std::vector<std::string> shown;
   for (std::size_t i = 0; i < std::min(kShown, unknown.size()); ++i)

@@ -5,8 +5,9 @@
 namespace liloc::command {
 namespace {
 
-constexpr std::size_t kExcerpt = 40;                    // a name or a number, known again by its beginning
-constexpr std::size_t kLongestLine = 400, kKept = 190;  // a path, a field and a remedy fit
+// A name or a number, known again by its beginning; by hand.
+constexpr std::size_t kExcerpt = 40;
+constexpr std::size_t kLongestLine = 400, kKept = 190;  // a path, a field and a remedy fit; by hand
 
 bool printable_ascii(char c) {
   return c >= ' ' && c <= '~';

@@ -9,8 +9,8 @@
 namespace liloc::command {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-constexpr std::size_t kLongestText = 4096;  // the longest path of Linux
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // of UTF-8
+constexpr std::size_t kLongestText = 4096;                   // the longest path of Linux
 
 bool is_bare(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||

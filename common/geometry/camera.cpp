@@ -5,7 +5,7 @@
 namespace liloc {
 namespace {
 
-constexpr int kLargestSide = 8192;
+constexpr int kLargestSide = 8192;  // no depth camera has as many pixels; by hand
 
 bool positive(double value) {
   return std::isfinite(value) && value > 0;

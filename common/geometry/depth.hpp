@@ -6,9 +6,10 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct DepthOptions {
-  double min_range_m = 0.25;         ///< z-depth; nearer returns are the sensor's own housing
-  double max_range_m = 8.5;          ///< z-depth; farther returns of a 9 m sensor are mostly noise
+  double min_range_m = 0.25;  ///< z-depth; nearer returns are the sensor's own housing (L515: paper, Table 1)
+  double max_range_m = 8.5;   ///< z-depth; farther returns of a 9 m sensor are mostly noise
   double flying_pixel_share = 0.05;  ///< a pixel farther than this share of its depth from both neighbours in a
                                      ///< row and both in a column hangs in the air and is dropped; 0 keeps all
 };

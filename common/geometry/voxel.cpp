@@ -56,8 +56,8 @@ class CellTable {
   std::vector<std::uint32_t> values_;
 };
 
-constexpr int kBlockBits = 2;  // blocks of 4 x 4 x 4 voxels
-constexpr std::size_t kVoxelsOfBlock = 64;
+constexpr int kBlockBits = 2;               // blocks of 4 x 4 x 4 voxels
+constexpr std::size_t kVoxelsOfBlock = 64;  // 4 x 4 x 4
 
 /// A voxel in the order in which a block's voxels are kept: every other one first, as on a chessboard, then the
 /// fuller ones.

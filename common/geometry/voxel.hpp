@@ -12,7 +12,7 @@ namespace liloc {
 
 /// A cell as one number (21 bits an axis: +-52 km at 0.05 m).
 [[nodiscard]] inline std::uint64_t cell_key(const Eigen::Vector3i& cell) {
-  constexpr std::int64_t kHalf = 1 << 20, kMask = (1 << 21) - 1;
+  constexpr std::int64_t kHalf = 1 << 20, kMask = (1 << 21) - 1;  ///< 21 bits of an axis: three fit 64
   const auto part = [](int i) { return static_cast<std::uint64_t>((i + kHalf) & kMask); };
   return part(cell.x()) | part(cell.y()) << 21 | part(cell.z()) << 42;
 }

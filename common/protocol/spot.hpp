@@ -66,26 +66,29 @@ struct SpotRequest {
 
 enum class SpotStatus : std::uint8_t { verified = 1, provisional = 2, refused = 3 };
 
-/// Why a reply is what it is. Ids are added, never reused.
+/// Why a reply is what it is. Ids are added, never reused. With the paper's verification (`--verify paper`)
+/// `confirmed`: at least two of its three checks hold; `corrected`: one holds, and this spot is the odd one;
+/// `awaiting_spots`: fewer than three spots; `inconsistent`: no check holds. With `--verify none` every pose
+/// that is found is `confirmed`.
 enum class Reason : std::uint8_t {
-  none = 0,
-  confirmed = 1,        ///< verified: by this spot and those before it (or the paper's checks, where chosen)
-  conclusive = 2,       ///< verified: by this spot alone
-  corrected = 3,        ///< verified: this spot's own search led elsewhere, the others outweigh it
-  awaiting_spots = 10,  ///< provisional: too few spots to verify
-  ambiguous = 11,     ///< provisional: the likeliest place is not likely enough; `advice` says what would help
-  inconsistent = 12,  ///< provisional: the same, and this spot's own search led elsewhere
-  weak = 13,          ///< provisional: a pose that was verified before and that this spot leaves in doubt
-  no_gpc = 20,        ///< refused: no global cloud within 100 ms of the request's stamp
-  not_found = 21,     ///< refused: no candidate pose was acceptable
-  superseded = 22,    ///< refused: a newer request of the same client took its place
-  overloaded = 23,    ///< refused: the queue was full, or a search took too long
-  late = 24,          ///< refused: older than the client's last answered request
-  bad_request = 25,   ///< refused: a value out of range; `text` names it
-  bad_cloud = 26,     ///< refused: the LPC could not be decoded, or has too few points
+  none = 0,               ///< not decided yet; no server sends it
+  confirmed = 1,          ///< verified: by this spot and those before it, whose pose it bears out
+  conclusive = 2,         ///< verified: by the first search of its segment alone, or cold
+  corrected = 3,          ///< verified: elsewhere than this spot's own search, or than the pose followed so far
+  awaiting_spots = 10,    ///< provisional: few searches so far and nothing else is amiss; or cold
+  ambiguous = 11,         ///< provisional: this spot's search led to the likeliest place; not likely enough
+  inconsistent = 12,      ///< provisional: this spot's search led elsewhere than to the likeliest place
+  weak = 13,              ///< provisional: of a pose that was verified before, which is in doubt by now
+  no_gpc = 20,            ///< refused: no ceiling frame within 100 ms of the request's stamp
+  not_found = 21,         ///< refused: no pose fits, or the server failed
+  superseded = 22,        ///< refused: a newer request of the same client took its place, or the client left
+  overloaded = 23,        ///< refused: the queue was full and this was its oldest; or a search took too long
+  late = 24,              ///< refused: a request as new as this was answered already
+  bad_request = 25,       ///< refused: a value out of range; `text` names it
+  bad_cloud = 26,         ///< refused: the LPC could not be decoded, or has too few points
   protocol_version = 27,  ///< refused: client and server speak different versions
   identity = 28,          ///< refused: client_id is not the one bound to the sender's partition
-  rate_limit = 29,        ///< refused: the client asks too often
+  rate_limit = 29,        ///< refused: the client asks more often than the server allows (`--max-rate`)
   shutting_down = 30,     ///< refused: the server stops
   no_answer = 31,         ///< set by a client whose request timed out
 };
@@ -94,9 +97,9 @@ enum class Reason : std::uint8_t {
 enum class Advice : std::uint8_t {
   none = 0,
   wait = 1,           ///< few spots so far: more of the same will do
-  turn_around = 2,    ///< what is in view tells too little: look elsewhere from here
-  move_on = 3,        ///< what can be seen from here tells too little
-  more_coverage = 4,  ///< the ceiling does not see this place
+  turn_around = 2,    ///< the ceiling sees little of what is in view, or it hardly holds a pose: look elsewhere
+  move_on = 3,        ///< what can be seen from here fits no place, or none distinctly enough
+  more_coverage = 4,  ///< over three searches or more the ceiling sees little of it: it does not see this place
   twin = 5,           ///< another place of the room looks alike; `text` says which
   clear_view = 6,     ///< lines of sight are contradicted: people close by, or a calibration that is off
 };

@@ -8,8 +8,8 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kLargestJsonBytes = 4 << 20;
-constexpr double kAnyNumber = 1e12;
+constexpr std::size_t kLargestJsonBytes = 4 << 20;  // no site is described by more; by hand
+constexpr double kAnyNumber = 1e12;                 // any that a sane file holds; by hand
 
 /// What stands in a field, short enough for one line of an error.
 std::string shown(const nlohmann::json& value) {

@@ -9,7 +9,7 @@
 namespace liloc {
 namespace {
 
-constexpr double kSlowestHz = 0.01, kFastestHz = 10'000, kLongestStillSeconds = 3600;
+constexpr double kSlowestHz = 0.01, kFastestHz = 10'000, kLongestStillSeconds = 3600;  // by hand
 
 Result<GlobalLidar> lidar_of(const JsonFields& fields) {
   GlobalLidar lidar;

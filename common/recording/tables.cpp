@@ -12,6 +12,7 @@
 namespace liloc {
 namespace {
 
+// Memory bound; by hand.
 constexpr std::size_t kLargestTableBytes = std::size_t{1} << 30;
 constexpr std::int64_t kNsInSecond = 1'000'000'000;
 

@@ -4,7 +4,7 @@
 namespace liloc::wire {
 namespace {
 
-constexpr std::uint32_t kMaxSide = 8192;
+constexpr std::uint32_t kMaxSide = 8192;  // as common/geometry/camera.cpp has it
 
 Status check_image(const sensor_msgs_msg_dds__Image_& m, std::uint64_t pixel_bytes) {
   if (m.width < 1 || m.width > kMaxSide || m.height < 1 || m.height > kMaxSide)

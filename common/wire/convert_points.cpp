@@ -4,9 +4,9 @@
 namespace liloc::wire {
 namespace {
 
-constexpr std::uint32_t kMaxPoints = 4'000'000;
-constexpr float kMaxCoordinate_m = 1000.0F;
-constexpr std::uint8_t kFloat32 = 7;  // PointField's code
+constexpr std::uint32_t kMaxPoints = 4'000'000;  // memory bound; by hand
+constexpr float kMaxCoordinate_m = 1000.0F;      // no indoor sensor sees as far; by hand
+constexpr std::uint8_t kFloat32 = 7;             // PointField's code
 
 struct Xyz {
   std::uint32_t x = 0, y = 0, z = 0;

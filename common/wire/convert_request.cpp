@@ -5,6 +5,7 @@
 namespace liloc::wire {
 namespace {
 
+// As idl/liloc.idl has it.
 constexpr std::size_t kMaxLocalPoses = 256, kMaxLpcBytes = 262'144, kMaxExtraBytes = 65'536;
 
 Status read_local_poses(const liloc_msg_SpotRequest& message, SpotRequest& request) {

@@ -6,7 +6,7 @@
 namespace liloc::wire {
 namespace {
 
-constexpr std::size_t kMostValues = 64;
+constexpr std::size_t kMostValues = 64;  // as idl/ros2.idl has it
 
 }  // namespace
 

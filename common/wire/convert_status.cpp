@@ -23,7 +23,7 @@ std::string_view name_of(LidarState state) {
 }
 
 StatusSample to_wire(const ServerStatus& status) {
-  constexpr std::size_t kMaxLidars = 64;
+  constexpr std::size_t kMaxLidars = 64;  // as idl/liloc.idl has it
   StatusSample sample;
   auto& m = sample.message;
   m.protocol_version = kProtocolVersion;

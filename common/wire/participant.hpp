@@ -27,6 +27,7 @@ enum class Role {
          ///< on a host where a server is to start later in the same domain
 };
 
+/// Defaults are by hand where nothing else is said.
 struct DomainOptions {
   int domain = 0;  ///< 0..230
   Role role = Role::client;

@@ -9,7 +9,7 @@
 namespace liloc::wire {
 namespace {
 
-constexpr int kMaxDomain = 230;
+constexpr int kMaxDomain = 230;  // ports of a higher domain exceed 65535
 
 int server_port(int domain) {
   return 7410 + 250 * domain;

@@ -19,7 +19,7 @@ Status subscribe_sensor(Dispatcher& dispatcher, const std::string& topic, int de
       [handler = std::move(handler)](const auto& message, const auto&) { handler(from_wire(message)); });
 }
 
-constexpr int kFrames = 5;
+constexpr int kFrames = 5;     // kept for a busy reader, the newest; by hand
 constexpr int kSamples = 256;  // more than a second at 200 Hz: none must be lost to what a busy thread delays
 
 }  // namespace

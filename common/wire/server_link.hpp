@@ -41,6 +41,7 @@ struct ServerCallbacks {
       {};  ///< this writer is gone; its handle may be forgotten
 };
 
+/// Defaults are by hand where nothing else is said.
 struct ServerLinkOptions {
   std::string server_id = "liloc";
   std::size_t max_clients = 512;  ///< more are not served; a warning says so

@@ -80,7 +80,7 @@ Result<Entity> make_reader(std::int32_t participant, std::int32_t parent, const 
 /// Takes what has come, in order. At most 256 a call, so that a flood does not hold the thread.
 template <class T>
 void take_each(std::int32_t reader, const std::function<void(const T&, const dds_sample_info_t&)>& handle) {
-  constexpr int kBatch = 16;
+  constexpr int kBatch = 16;  ///< samples on loan at once; by hand
   for (int taken = 0; taken < 256;) {
     std::array<void*, kBatch> samples{};
     std::array<dds_sample_info_t, kBatch> infos;

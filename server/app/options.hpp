@@ -9,6 +9,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct ServerOptions {
   std::string site_file;
   std::string state_file;  ///< what the server learns of the site; empty: kept in memory alone

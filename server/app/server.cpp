@@ -13,8 +13,8 @@
 namespace liloc {
 namespace {
 
-constexpr auto kPreparePeriod = std::chrono::milliseconds(50);  // a third of a ceiling frame's
-constexpr auto kSavePeriod = std::chrono::minutes(1);
+constexpr auto kPreparePeriod = std::chrono::milliseconds(50);  // a third of a ceiling frame's; by hand
+constexpr auto kSavePeriod = std::chrono::minutes(1);  // so much is lost with a server that is killed; by hand
 
 StampNs wall_clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(

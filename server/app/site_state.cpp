@@ -12,9 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* kFormat = "liloc site state";
-constexpr int kVersion = 2;
-constexpr double kAny = 1e9;
-constexpr double kSamePlace_m = 0.5;  // calibrations differ by less
+constexpr int kVersion = 2;           // of the file's layout
+constexpr double kAny = 1e9;          // any number; what it means is checked later
+constexpr double kSamePlace_m = 0.5;  // calibrations differ by less; by hand
+// Files that lie aside; then no name is free for another; by hand.
 constexpr int kMostPutAside = 100;
 
 /// A field that the rest of the file is worth nothing without.

@@ -6,17 +6,18 @@
 namespace liloc {
 namespace {
 
-constexpr int kProven = 4;   // frames in a surface that speaks for its neighbours
-constexpr int kCompany = 2;  // neighbours that move as well, or it is noise
+constexpr int kProven = 4;   // frames in a surface that speaks for its neighbours; by hand
+constexpr int kCompany = 2;  // neighbours that move as well, or it is noise; by hand, DECISIONS.md
 
-constexpr float kHoldShare = 0.003F;  // of the depth
-constexpr int kMoreFrames = 3;        // times as many in a mean make it worth showing anew
+constexpr float kHoldShare = 0.003F;  // of the depth; by hand, DECISIONS.md
+// Times as many in a mean make it worth showing anew; by hand, DECISIONS.md.
+constexpr int kMoreFrames = 3;
 
 constexpr std::size_t kMeasureEvery = 5;  // pixels, another fifth each frame: enough by far within a second
-constexpr float kGapGain = 1.0F / 16;     // of a gap in the pixel's mean
-constexpr float kLeastLost = 0.002F;      // nothing is surer than that
-constexpr double kMostMissing = 0.95;     // a pixel with fewer returns is forgotten as if it had these
-constexpr std::uint16_t kMostMissed = 60'000;
+constexpr float kGapGain = 1.0F / 16;     // of a gap in the pixel's mean; by hand
+constexpr float kLeastLost = 0.002F;      // nothing is surer than that; by hand
+constexpr double kMostMissing = 0.95;     // a pixel with fewer returns is forgotten as if it had these; by hand
+constexpr std::uint16_t kMostMissed = 60'000;  // frames; it fits 16 bits
 
 bool lasted(std::uint32_t since_ms, std::uint32_t now_ms, double seconds) {
   return static_cast<double>(now_ms - since_ms) >= 1e3 * seconds;

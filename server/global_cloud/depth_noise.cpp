@@ -8,15 +8,17 @@
 namespace liloc {
 namespace {
 
-constexpr double kRange_m = 0.5;               // width of a bin: a sensor's noise changes little within
+// Width of a bin: a sensor's noise changes little within; by hand.
+constexpr double kRange_m = 0.5;
 constexpr double kLeast_m = 0.00025;           // half the finest unit of the sensors known
 constexpr double kGrowth = 1.16;               // of the bins of size, up to 0.27 m
 constexpr std::uint32_t kEnough = 300;         // pairs in a range's bin that count: their median is good to 5 %
-constexpr std::uint32_t kFade = 100'000;       // pairs in a bin; then half are forgotten
-constexpr int kFitEvery = 8;                   // frames
-constexpr double kShareGain = 0.05;            // of a frame in the shares: a memory of 20 frames
+constexpr std::uint32_t kFade = 100'000;       // pairs in a bin; then half are forgotten; by hand
+constexpr int kFitEvery = 8;                   // frames; by hand
+constexpr double kShareGain = 0.05;            // of a frame in the shares: a memory of 20 frames; by hand
 constexpr double kOfMedian = 1.4826 / 1.4142;  // a frame's standard deviation over the median of differences
-constexpr double kFinest_m = 0.003;            // in the fit: below, units and steps say more than noise
+// In the fit: below, units and steps say more than noise; by hand.
+constexpr double kFinest_m = 0.003;
 
 }  // namespace
 

@@ -33,7 +33,7 @@ class NoiseMeter {
   [[nodiscard]] const DepthNoise& noise() const { return noise_; }
 
  private:
-  static constexpr int kRanges = 24, kSizes = 48;
+  static constexpr int kRanges = 24, kSizes = 48;  ///< to 12 m in bins of 0.5 m, and to 0.27 m in bins of size
   struct Range {
     std::array<std::uint32_t, kSizes> counts{};  ///< of differences by their size
     std::uint32_t all = 0;

@@ -5,10 +5,12 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kSnapshotsKept = 6, kRoomsKept = 3;  // a room's indices are some 20 MB, a snapshot 1 MB
-constexpr int kLateOnes = 3;                               // in a row: it is not one bad stamp
+// A room's indices are some 20 MB, a snapshot 1 MB; by hand.
+constexpr std::size_t kSnapshotsKept = 6, kRoomsKept = 3;
+constexpr int kLateOnes = 3;  // in a row: it is not one bad stamp; by hand
 
-constexpr int kRoomsDescribedAhead = 16;  // once one was asked for; a crowded room is renewed every second
+// Once one was asked for; a crowded room is renewed every second; by hand.
+constexpr int kRoomsDescribedAhead = 16;
 
 StampNs gap(StampNs a, StampNs b) {
   return a > b ? a - b : b - a;

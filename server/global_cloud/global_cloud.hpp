@@ -15,13 +15,14 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct GlobalCloudOptions {
   SnapshotOptions snapshot;
   BackgroundOptions background;
-  bool drop_moving = true;                 ///< what moves is not map: it neither registers nor contradicts
-  StampNs keep_ns = from_seconds(3.0);     ///< frames older than the newest by more than this are forgotten
-  StampNs renew_ns = from_seconds(4.0);    ///< small changes of the room are gathered for so long
-  StampNs match_ns = from_ms(100.0);       ///< farther from a request than this is no GPC (paper, section 5.3)
+  bool drop_moving = true;               ///< what moves is not map: it neither registers nor contradicts
+  StampNs keep_ns = from_seconds(3.0);   ///< frames older than the newest by more than this are forgotten
+  StampNs renew_ns = from_seconds(4.0);  ///< small changes of the room are gathered for so long
+  StampNs match_ns = from_ms(100.0);     ///< farther from a request than this is no GPC (paper, section 5.3.1)
   std::size_t max_frames_per_lidar = 128;  ///< a LiDAR that floods loses its oldest
 };
 

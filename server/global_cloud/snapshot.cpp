@@ -11,7 +11,7 @@
 namespace liloc {
 namespace {
 
-constexpr double kMovingVoxel_m = 0.15;
+constexpr double kMovingVoxel_m = 0.15;  // by hand
 
 SightView view_of(const DepthImage& image, const GlobalLidar& lidar, const SnapshotOptions& options) {
   return SightView::from_depth(image, lidar.camera, lidar.T_map_sensor.inverse(), options.view_factor,

@@ -7,13 +7,16 @@ namespace liloc {
 namespace {
 
 // Of one look; the right place shows 0.07 % of contradiction where sensors are good, and never over 6 % there.
+// By hand.
 constexpr double kNeverSupported = 0.05, kFewConflicts = 0.0007, kMuchConflict = 0.06;
 // A rival recognizes so much of what the place does; less than that is the twin's risk: where the ceiling
 // hardly looks, nothing contradicts. 0.4 against 0, 0.1 and 0.25: the least log loss on worlds not fitted on.
-constexpr double kRival = 0.4;
-constexpr double kFewBits = 3;                              // below which places are told apart no better
-constexpr double kLeastSd_m = 0.002, kMostSd_m = 0.5;       // a deviation says no more beyond these
-constexpr double kRight_m = 0.3, kRight_rad = radians(10);  // what counts as the right place
+constexpr double kRival = 0.4;  // by log loss on held-out worlds, DECISIONS.md
+// Below which places are told apart no better; by hand.
+constexpr double kFewBits = 3;
+constexpr double kLeastSd_m = 0.002, kMostSd_m = 0.5;  // a deviation says no more beyond these; by hand
+// What counts as the right place; paper, section 3.1.2.
+constexpr double kRight_m = 0.3, kRight_rad = radians(10);
 constexpr double kCovarianceScale = 1.3;  // deviations are stated too small by so much (CONFIDENCE.md)
 
 double log_bits(const PlaceEvidence& place) {

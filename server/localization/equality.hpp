@@ -12,7 +12,7 @@ struct SpotPose {
   Pose T_map_sensor = Pose::Identity(), T_odom_sensor = Pose::Identity();
 };
 
-/// How far two ways to the same pose may differ and still be called equal.
+/// How far two ways to the same pose may differ and still be called equal. The paper gives no values: by hand.
 struct EqualityThresholds {
   double angle_rad = radians(5.0);
   double distance_m = 0.20;

@@ -9,11 +9,11 @@ namespace {
 constexpr double kHazard = 1e-4;  // per spot, of a break that no spot shows: none in 3541 followed spots
 // By logistic regression over 7900 looks at right and wrong places (CONFIDENCE.md), rounded.
 constexpr double kContradiction = 1.5, kExcess = 29, kMisfit = 2.0, kLeft = 4.0, kClean = 1.5;
-constexpr double kSpread = 0.5;        // of the contradiction of one right look to the next
+constexpr double kSpread = 0.5;        // of the contradiction of one right look to the next; by hand
 constexpr double kFullSupport = 0.35;  // -log(1.05 - 0.35): a third of the cloud on seen surfaces
-constexpr double kRepeated = 0.3;      // of what a clean look is worth where nothing in it is new
-constexpr double kUsual = 0.2;         // weight of a new look in the average
-constexpr double kMostAgainst = 6;
+constexpr double kRepeated = 0.3;      // of what a clean look is worth where nothing in it is new; by hand
+constexpr double kUsual = 0.2;         // weight of a new look in the average; by hand
+constexpr double kMostAgainst = 6;     // log odds that one look takes at most; by hand
 
 double most() {
   return log_odds_of_risk(kHazard);

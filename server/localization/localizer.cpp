@@ -16,7 +16,7 @@
 namespace liloc {
 namespace {
 
-constexpr double kGravityOff_rad = radians(5.0);
+constexpr double kGravityOff_rad = radians(5.0);  // by hand
 
 /// A verified pose shows whether what the device takes for gravity is right.
 void note_gravity(const SpotRequest& request, const Snapshot& snapshot, SpotReply* reply) {

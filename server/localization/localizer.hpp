@@ -26,11 +26,12 @@ enum class Verify { tracks, paper, none };
 enum class Icp { point, plane };
 [[nodiscard]] Result<Icp> icp_from(std::string_view name);
 
+/// Defaults are by hand where nothing else is said.
 struct LocalizerOptions {
   Method method = Method::liloc;
   std::optional<Verify> verify = std::nullopt;  ///< empty: the method's own
   std::optional<Icp> icp = std::nullopt;        ///< empty: the method's own
-  double voxel_size_m = 0.05;
+  double voxel_size_m = 0.05;                   ///< paper, section 3.1.5; 0.03 and 0.08 m are in VARIANTS.md
   double sampling = 0.5;   ///< share of points with features that RANSAC uses (paper, section 5.2)
   std::uint64_t seed = 1;  ///< all randomness comes from it, the client id and the request's seq
   int threads = 1;         ///< per request

@@ -10,6 +10,7 @@
 namespace liloc {
 namespace {
 
+// By hand.
 constexpr double kLeastSurface_m2 =
     0.375;  // 150 points at 0.05 m: less is a patch of wall that fits everywhere
 
@@ -20,8 +21,8 @@ bool convincing(const std::vector<Hypothesis>& found) {
 }
 
 /// How features are searched: without gravity by samples of two normals, which find most in least time
-/// (common/registration/DECISIONS.md). What is kept of a cell is mostly of one place, and as many are proposed
-/// as are judged.
+/// (common/registration/search/DECISIONS.md). What is kept of a cell is mostly of one place, and as many are
+/// proposed as are judged.
 FeatureSearchOptions feature_search_of(const SpotProblem& problem, double voxel_size_m) {
   FeatureSearchOptions features;
   if (problem.up_sensor) return features;

@@ -20,6 +20,7 @@ struct Track {
   bool fits = false;  ///< whether the newest spot, refined from it, stays with it and is not contradicted
 };
 
+/// Defaults are by hand where nothing else is said.
 struct TrackOptions {
   std::size_t memory = 5;    ///< spots that are looked back at
   std::size_t searches = 9;  ///< whose own answers are remembered

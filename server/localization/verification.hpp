@@ -7,6 +7,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct VerifyOptions {
   EqualityThresholds equality;
   TrackOptions tracks;

@@ -8,6 +8,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct ServiceOptions {
   std::string server_id = "liloc";
   int workers = 1;                      ///< requests worked on at once; 1..64

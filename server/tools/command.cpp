@@ -23,8 +23,8 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::show(double share) {
-  constexpr double kPatience_ms = 2000, kRedraw_ms = 100;
-  constexpr int kWidth = 40;
+  constexpr double kPatience_ms = 2000, kRedraw_ms = 100;  // what is done sooner shows no bar; by hand
+  constexpr int kWidth = 40;                               // columns; by hand
   const double now_ms = watch_.elapsed_ms();
   if (!terminal_ || now_ms < kPatience_ms || now_ms < drawn_ms_ + kRedraw_ms) return;
   drawn_ms_ = now_ms;

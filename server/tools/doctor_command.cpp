@@ -16,7 +16,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kSecondServer = 1500ms;  // a status comes every second: so long after the first all have spoken
+// A status comes every second: so long after the first all have spoken; by hand.
+constexpr auto kSecondServer = 1500ms;
 
 struct DoctorArguments {
   wire::DomainOptions seat;

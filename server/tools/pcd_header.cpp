@@ -18,6 +18,7 @@ namespace {
 using Words = std::vector<std::string>;
 constexpr std::array kKeywords{"VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
                                "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+// A sound header is far shorter; 50 million points are far beyond a building. By hand.
 constexpr int kMostLines = 64;
 constexpr std::size_t kLongestLine = 4096, kMostFields = 64;
 constexpr double kMostPoints = 50e6, kMostOfAField = 4096;

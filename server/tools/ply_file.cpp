@@ -12,7 +12,7 @@
 namespace liloc::toolbox {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{4} << 30;
+constexpr std::size_t kLargestFile = std::size_t{4} << 30;  // by hand
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Takes one number after the other off the data; past the end it is not sound any more.

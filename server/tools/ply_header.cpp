@@ -11,6 +11,7 @@ namespace {
 
 using command::excerpt;
 
+// A sound header is far shorter; by hand.
 constexpr std::size_t kLongestHeader = 1 << 16, kMostElements = 16, kMostProperties = 256;
 constexpr std::size_t kMostItems = 50'000'000;  // as for PCD: far beyond a building, and 2 GB at most
 

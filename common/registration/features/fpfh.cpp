@@ -14,6 +14,7 @@
 namespace liloc {
 namespace {
 
+// Rusu, Blodow, Beetz 2009.
 constexpr int kBins = 11;
 constexpr int kNoBin = kBins;  // of a pair without a Darboux frame
 constexpr int kPart = 12;      // a histogram and what goes nowhere
@@ -50,7 +51,7 @@ struct Pairs {
 LILOC_WIDE void bin_pairs(const float* x, const float* y, const float* z, const float* nx, const float* ny,
                           const float* nz, int count, const float* p, const float* n, std::int32_t* alpha,
                           std::int32_t* phi, std::int32_t* theta) {
-  constexpr float kTiny = 1e-30F;
+  constexpr float kTiny = 1e-30F;  // keeps zero lengths from dividing
   const float px = p[0], py = p[1], pz = p[2], hx = n[0], hy = n[1], hz = n[2];
 #pragma omp simd
   for (int i = 0; i < count; ++i) {

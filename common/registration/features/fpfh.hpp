@@ -7,6 +7,7 @@
 
 namespace liloc {
 
+// Rusu, Blodow, Beetz 2009: three histograms of eleven bins.
 inline constexpr int kFpfhSize = 33;
 
 /// Described points of a cloud: column i of `descriptors` belongs to point `index[i]`.

@@ -10,10 +10,10 @@
 namespace liloc {
 namespace {
 
-constexpr double kMostCells = 8e6;  // of a plane
+constexpr double kMostCells = 8e6;  // of a plane; by hand: memory
 constexpr double kSnap_m = 0.2;     // so that a point at the rim that moves a little moves no cell
-constexpr float kSameWay = 0.5F;    // cosine up to which a surface enters the plane of a direction
-constexpr double kReach = 2.2;      // standard deviations
+constexpr float kSameWay = 0.5F;    // cosine up to which a surface enters the plane of a direction; by hand
+constexpr double kReach = 2.2;      // standard deviations; by hand
 
 /// The direction that a plane stands for.
 Eigen::Vector3f direction_of(int plane) {
@@ -81,7 +81,7 @@ struct FieldLayers::Stamp {
     }
   }
 
-  static constexpr std::size_t kBins = 64;
+  static constexpr std::size_t kBins = 64;  // of squared distance, for a first guess at a Gaussian
   float reach_m;
   std::array<float, kNear + 1> limits{};  ///< squared distances up to which a value is reached
   std::array<int, kBins> first_guess{};

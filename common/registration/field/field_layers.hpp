@@ -8,6 +8,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct FieldOptions {
   double cell_m = 0.1;
   double surface_sd_m = 0.08;  ///< how far from a surface its worth reaches, as a Gaussian
@@ -19,8 +20,8 @@ struct FieldOptions {
 /// ceiling sensors look through it. From the layers of a room those of the next are made where it changed.
 class FieldLayers {
  public:
-  static constexpr int kNear = 15;  ///< on a surface
-  static constexpr int kAzimuths = 8, kUp = 8, kDown = 9, kDirections = 10;
+  static constexpr int kNear = 15;  ///< on a surface; eight fit a byte, RowSums
+  static constexpr int kAzimuths = 8, kUp = 8, kDown = 9, kDirections = 10;  ///< 45 degrees each; by hand
   static constexpr int kAny = 10;  ///< the plane of surfaces that face anywhere
 
   FieldLayers() = default;

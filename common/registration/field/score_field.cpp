@@ -11,9 +11,9 @@
 namespace liloc {
 namespace {
 
-constexpr float kUpright = 0.7F;      // |z| of a normal from which a surface counts as horizontal
-constexpr double kMostBits = 5.6;     // told by a rare surface: a fiftieth of its layer
-constexpr double kLeastWeight = 0.1;  // of one that is everywhere
+constexpr float kUpright = 0.7F;      // |z| of a normal from which a surface counts as horizontal; 45 degrees
+constexpr double kMostBits = 5.6;     // told by a rare surface: a fiftieth of its layer; by hand
+constexpr double kLeastWeight = 0.1;  // of one that is everywhere; by hand
 constexpr int kReadAhead = 31;        // rows are read in blocks of 32
 
 /// What is near in a layer of a plane is worth by its rarity: a hit on what covers the share q of the space

@@ -10,7 +10,7 @@
 namespace liloc {
 namespace {
 
-constexpr double kMostBlocks = 1 << 24;  // 67 MB of block table: a larger extent gets larger cells
+constexpr double kMostBlocks = 1 << 24;  // 67 MB of block table: a larger extent gets larger cells; by hand
 constexpr std::size_t kAtOnce = 256;     // points whose cells are found before any is looked up
 constexpr float kSnapCells = 8;          // so that a point at the rim that moves a little moves no cell
 /// While a grid is taken over: a cell whose point is gone; below, who has it for now.

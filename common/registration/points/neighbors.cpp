@@ -17,7 +17,7 @@ LILOC_WIDE void squared_distances(const float* xs, const float* ys, const float*
   }
 }
 
-constexpr int kPartBits = 21;  // of an axis in a cell's key
+constexpr int kPartBits = 21;  // of an axis in a cell's key; three fit 64 bits
 constexpr std::uint64_t kLastPart = (1 << kPartBits) - 1;
 
 std::uint64_t part_of(std::uint64_t key, int axis) {

@@ -11,8 +11,8 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kSums = 10;
-constexpr int kNewtonSteps = 6;
+constexpr std::size_t kSums = 10;   // count, mean and second moments of a neighbourhood
+constexpr int kNewtonSteps = 6;     // by hand
 constexpr float kNoPlane = 1e-10F;  // squared; below, rounding decides what is across
 
 /// Of each point's neighbourhood: count, sums, and sums of products of the offsets from the point. Relative to

@@ -3,6 +3,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct NormalOptions {
   double radius_m = 0.125;  ///< 2.5 voxels of 0.05 m: about 20 neighbours on a surface
   int min_neighbors = 5;    ///< fewer (the point itself counts) hang in the air: the point is dropped

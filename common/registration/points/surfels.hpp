@@ -16,6 +16,7 @@ struct Surfel {
   float count = 0;                                       ///< points
 };
 
+/// Defaults are by hand where nothing else is said.
 struct SurfelOptions {
   double size_m = 0.10;  ///< voxel edge; two LPC voxels hold enough points for a normal up to 6 m away
   int min_points = 6;    ///< fewer have no direction

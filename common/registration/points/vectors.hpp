@@ -13,7 +13,7 @@ struct PointRun {
 
 /// One vector per point as arrays, filled up with zeros to whole registers.
 struct Vectors {
-  static constexpr std::size_t kLanes = 8;
+  static constexpr std::size_t kLanes = 8;  ///< floats of an AVX2 register
   std::vector<float> x, y, z;
 
   explicit Vectors(std::size_t count)

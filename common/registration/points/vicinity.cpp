@@ -8,9 +8,10 @@
 namespace liloc {
 namespace {
 
+// By hand; the second bounds memory.
 constexpr double kCell_m = 0.08, kMostCells = 4e6;
 constexpr double kHalfDiagonal = 0.8661;  // of a cell; rounded up
-constexpr float kRounding_m = 1e-3F;
+constexpr float kRounding_m = 1e-3F;      // above what floats round indoors; by hand
 
 }  // namespace
 

@@ -4,11 +4,13 @@
 namespace liloc {
 
 /// What is not noise of single points and so does not average out.
+/// Defaults are by hand where nothing else is said.
 struct CovarianceOptions {
   double max_pair_distance_m = 0.08;  ///< as refinement's last
   double min_normal_agreement = 0.5;
-  double patch_m = 0.4;          ///< points nearer to each other share their errors ...
-  double patch_bias_m = 0.001;   ///< ... and this one besides what their residuals show
+  double patch_m =
+      0.4;  ///< points nearer to each other share their errors (of greatest likelihood, DECISIONS.md) ...
+  double patch_bias_m = 0.001;   ///< ... and this one besides what their residuals show (likewise)
   double common_bias_m = 0.001;  ///< of all points alike: calibration, voxels, a sensor's range
   /// Of surroundings outside the frame's view: the device placed them by its odometry.
   double surroundings_sd_rad = radians(0.03), surroundings_sd_m = 0.002;

@@ -3,14 +3,16 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct RefineOptions {
-  double start_distance_m = 0.20;     ///< farther pairs are ignored at first ...
-  double end_distance_m = 0.08;       ///< ... and at last
-  int sparse_iterations = 10;         ///< few device points against the thinned target: far from the answer
-  int coarse_iterations = 6;          ///< thinned clouds, at distances down to twice the end
-  int fine_iterations = 8;            ///< thinned device cloud against the full target
-  double min_normal_agreement = 0.5;  ///< cosine between the two normals of a pair
-  double fit_distance_m = 0.05;       ///< a point with one of the target's so near counts for the fitness
+  double start_distance_m = 0.20;  ///< farther pairs are ignored at first ...
+  double end_distance_m = 0.08;    ///< ... and at last
+  int sparse_iterations = 10;      ///< few device points against the thinned target: far from the answer
+  int coarse_iterations = 6;       ///< thinned clouds, at distances down to twice the end
+  int fine_iterations = 8;         ///< thinned device cloud against the full target
+  double min_normal_agreement =
+      0.5;                       ///< cosine between the two normals of a pair; 0.8 was level (DECISIONS.md)
+  double fit_distance_m = 0.05;  ///< a point with one of the target's so near counts for the fitness
   /// How tightly each of the three passes is held to where it starts: as by so large a share of all pairs, were
   /// they to hold that direction. Noisy normals on a bare floor walk further than its few real edges pull.
   double hold = 0;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::uint64_t kFree = ~std::uint64_t{0};
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-constexpr std::size_t kFirstSlots = 1 << 15;
-constexpr float kSameSide = 0.7F;  // cosine of 45 degrees
+constexpr std::size_t kFirstSlots = 1 << 15;  // grows when half full
+constexpr float kSameSide = 0.7F;             // cosine of 45 degrees
 
 /// The nearest return around a pixel, so that the rim of an object does not count as a view past it; 0 = none.
 std::uint16_t nearest_around(const DepthImage& image, int u, int v) {

@@ -8,6 +8,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct LocalMapOptions {
   double cell_m = 0.10;              ///< one surfel per cell
   std::size_t max_surfels = 40'000;  ///< memory bound (about 100 bytes each); the longest unseen go first
@@ -62,7 +63,7 @@ class LocalMap {
   [[nodiscard]] double cell_m() const { return options_.cell_m; }
   void clear();
 
-  static constexpr float kYoungWeight = 0.2F;
+  static constexpr float kYoungWeight = 0.2F;  ///< by hand
 
  private:
   [[nodiscard]] std::uint32_t lookup(std::uint64_t key) const;

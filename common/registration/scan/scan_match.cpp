@@ -8,11 +8,12 @@
 namespace liloc {
 namespace {
 
-constexpr double kUsualRangeM = 2.0;  // at which a turn shows as a shift
+constexpr double kUsualRangeM = 2.0;  // at which a turn shows as a shift; by hand
 using Matrix6f = PatchWeights::Matrix6f;
 using Vector6f = PatchWeights::Vector6f;
 
-constexpr double kCharacteristicLengthM = 2.0;  // weighs radians against metres when directions are compared
+// Weighs radians against metres when directions are compared; by hand.
+constexpr double kCharacteristicLengthM = 2.0;
 
 struct Source {
   Eigen::Vector3f mean, normal;

@@ -25,6 +25,7 @@ struct MotionGuess {
   [[nodiscard]] double surprise_of(const Pose& T_map_sensor_other) const;
 };
 
+/// Defaults are by hand where nothing else is said.
 struct ScanMatchOptions {
   int max_iterations = 12;
   std::optional<Pose> start;       ///< where the steps begin; empty: at the guess, which stays the prior

@@ -6,6 +6,7 @@
 namespace liloc {
 
 /// How far two poses may differ and still be called the same place.
+/// Defaults are by hand where nothing else is said.
 struct PlaceGate {
   double distance_m = 0.25;
   double angle_rad = radians(8.0);

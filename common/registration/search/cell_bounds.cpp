@@ -8,8 +8,8 @@ namespace liloc {
 namespace {
 
 constexpr double kFarthest_m = 1e5;   // as valid_pose has it
-constexpr double kLeastSd = 0.05;     // a handful of alike views does not make all others wrong
-constexpr double kConfidence = 1.96;  // 95 % of a normal distribution
+constexpr double kLeastSd = 0.05;     // a handful of alike views does not make all others wrong; by hand
+constexpr double kConfidence = 1.96;  // 95 % of a normal distribution; paper, section 5.2
 
 std::optional<GridCell> cell_at(const Eigen::Vector3d& place_map) {
   if (!place_map.allFinite() || place_map.cwiseAbs().maxCoeff() > kFarthest_m) return std::nullopt;

@@ -21,10 +21,10 @@ class CellBounds {
     int count = 0;  ///< registrations, up to kMostCounted
     double mean = 0, variance = 0;
   };
-  static constexpr int kFewest = 10;  ///< fewer registrations bound nothing
-  static constexpr int kMostCounted = 200;
-  static constexpr std::size_t kMostCells = 10'000;
-  static constexpr double kCell_m = 2.5;  ///< as FeatureSearchOptions::cell_m
+  static constexpr int kFewest = 10;                 ///< fewer registrations bound nothing; by hand
+  static constexpr int kMostCounted = 200;           ///< older ones fade: rooms change; by hand
+  static constexpr std::size_t kMostCells = 10'000;  ///< memory bound: 60 000 m2 of cells; by hand
+  static constexpr double kCell_m = 2.5;             ///< as FeatureSearchOptions::cell_m
 
   /// `place_map`: the middle of the device's cloud; `fitness` 0..1. Values out of range and cells beyond the
   /// most are left out.

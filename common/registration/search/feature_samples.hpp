@@ -18,6 +18,7 @@ enum class Sample {
   two_normals,   ///< two points and their normals: one right match fewer is needed
 };
 
+/// Defaults are by hand where nothing else is said.
 struct SampleOptions {
   Sample sample = Sample::three_points;
   int iterations = 60000;

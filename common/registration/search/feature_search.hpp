@@ -13,14 +13,16 @@ struct Described {
   Features features;
 };
 
+/// Defaults are by hand where nothing else is said.
 struct DescribeOptions {
   double feature_radius_m = 0.5;  ///< five times the spacing of the thinned cloud
-  double sampling = 0.5;          ///< share of the points that are described
+  double sampling = 0.5;          ///< share of the points that are described (paper, section 5.2)
   std::uint64_t seed = 1;
   std::size_t most = 100'000;  ///< about so many are described at most: matching costs their product
 };
 [[nodiscard]] Described describe(const Cloud& thinned, const DescribeOptions& options);
 
+/// Defaults are by hand where nothing else is said.
 struct FeatureSearchOptions {
   bool grid = true;        ///< Algorithm 2; false: one cell over everything
   double cell_m = 2.5;     ///< half the width of a cell

@@ -16,8 +16,9 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kFirstPoints = 160;  // that score every place
-constexpr std::size_t kHeap = 1200;        // places that survive, per thread
+constexpr std::size_t kFirstPoints = 160;  // that score every place; by hand
+constexpr std::size_t kHeap = 1200;        // places that survive, per thread; 4000 found no more, DECISIONS.md
+// First step in m and rad, and how often it is halved, repeated, and with how many points; by hand.
 constexpr Climber::Steps kFirstClimb{0.1, radians(2.5), 0, 2, 80};
 constexpr Climber::Steps kSecondClimb{0.1, radians(2.5), 2, 6, 240};
 

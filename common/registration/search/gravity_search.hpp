@@ -7,6 +7,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct GravitySearchOptions {
   double yaw_step_deg = 5.0;
   std::size_t climb_first = 800;   ///< best places of the coarse pass, climbed a little

@@ -12,9 +12,10 @@ namespace {
 
 using Normals = std::vector<Eigen::Vector3f>;
 
+// By hand.
 constexpr std::size_t kMostNormals = 4000, kMostAxes = 4;
 constexpr double kSameAxis_rad = radians(20.0), kGate_rad = radians(12.0), kTightGate_rad = radians(6.0);
-constexpr double kFewestOnPlane = 0.03;  // share of the normals: less is furniture
+constexpr double kFewestOnPlane = 0.03;  // share of the normals: less is furniture; by hand
 
 Normals evenly_picked(const Cloud& cloud) {
   Normals picked;

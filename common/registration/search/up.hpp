@@ -11,6 +11,7 @@ struct UpHypothesis {
   double confidence = 0;  ///< 0..1, for ranking; only a search with it shows if it is right
 };
 
+/// Defaults are by hand where nothing else is said.
 struct UpOptions {
   /// Where up is expected, e.g. -y of an optical frame held upright; zero: nowhere. Only ranks.
   Eigen::Vector3d expected = -Eigen::Vector3d::UnitY();

@@ -7,8 +7,9 @@
 namespace liloc {
 namespace {
 
+// Points of a run with a ball about it, and runs asked at once; by hand, for speed alone.
 constexpr std::size_t kRun = 32, kRunsAtOnce = 256;
-constexpr float kRounding_m = 1e-3F;
+constexpr float kRounding_m = 1e-3F;  // above what floats round indoors; by hand
 
 using PointIter = std::vector<Eigen::Vector3f>::iterator;
 

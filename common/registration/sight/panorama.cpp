@@ -6,10 +6,12 @@
 namespace liloc {
 namespace {
 
-constexpr int kColumns = 180, kRows = 90;  // two degrees
+// By hand, where nothing else is said.
+constexpr int kColumns = 180, kRows = 90;  // two degrees; by hand
 constexpr float kTooNear_m = 0.3F;         // directions mean little so near to where the sensor moved about
-constexpr int kFewestNeighbours = 5;       // of nine directions: between fewer points one may look through
-constexpr float kHidden_m = 0.5F;
+// Of nine directions: between fewer points one may look through; by hand.
+constexpr int kFewestNeighbours = 5;
+constexpr float kHidden_m = 0.5F;  // behind the nearest about, a point hides; by hand
 constexpr float kAgrees =
     5.0F / 3.0F;  // tolerances behind the nearest about: of slanted surfaces that is the edge
 constexpr double kMostHidden =

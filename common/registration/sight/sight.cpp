@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kAtOnce = 512;  // points whose words are kept before they are counted
 
-constexpr std::uint16_t kNoDepth = 65535;
+constexpr std::uint16_t kNoDepth = 65535;  // beyond any depth
 
 /// Takes a row of depths into the nearest and farthest of each column; 0 and what is too far are left out.
 LILOC_WIDEST void take_row(const std::uint16_t* units, std::uint16_t farthest, std::size_t count,

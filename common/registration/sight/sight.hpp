@@ -81,6 +81,7 @@ class SightView {
   [[nodiscard]] bool empty() const { return bands_.empty(); }
 
  private:
+  // In metres: under the least range of the sensors known (L515: 0.25 m; paper, section 3.1, Table 1).
   static constexpr float kNearest = 0.2F;
   using Band = DepthBand;
   [[nodiscard]] static Sight compare(const Band& band, float z, float tolerance_m) {

@@ -5,6 +5,7 @@
 
 namespace liloc {
 
+/// Defaults are by hand where nothing else is said.
 struct AlignOptions {
   double voxel_size_m = 0.05;  ///< 0.005..1
   double risk = 0.05;    ///< a pose is trusted if it is wrong with no greater probability; over 0, under 1

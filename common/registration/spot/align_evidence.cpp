@@ -6,13 +6,16 @@
 namespace liloc {
 namespace {
 
-constexpr std::size_t kEvery = 3;  // of the target's points, for sketches
-// In pairs; both from 1 to 4 rank alike (DECISIONS.md).
+constexpr std::size_t kEvery = 3;  // of the target's points, for sketches; by hand
+// In pairs; both from 1 to 4 rank alike (spot/DECISIONS.md).
 constexpr double kConflictPairs = 4, kMatchPairs = 2;
+// By hand.
 constexpr double kMostConflict = 0.25;  // of points in known directions; right poses not yet refined have less
 // In voxels: how far a refined pose may put points before a surface; one that is not refined; features apart.
+// By hand.
 constexpr double kTolerance = 3, kTolerancePosed = 5, kToleranceSampled = 9, kMatched = 4;
-constexpr float kPairs_voxels = 3.0F, kFacing = 0.5F;  // of sketches, and the least cosine between normals
+// Of sketches, and the least cosine between normals; by hand.
+constexpr float kPairs_voxels = 3.0F, kFacing = 0.5F;
 
 // Fitted by proto-tests/bench/fit_align.py to poses of 557 pairs of three scenes at a voxel of 0.05 m. Log odds
 // of a pose are the sum of these times `align_regressors`; that the first of all is right is the logistic of

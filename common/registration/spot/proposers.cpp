@@ -7,8 +7,9 @@
 namespace liloc {
 namespace {
 
-constexpr double kContradicts_rad = radians(5.0);  // planes tell up to a degree or two
-constexpr double kSure = 0.5;                      // confidence above which planes may contradict the device
+constexpr double kContradicts_rad = radians(5.0);  // planes tell up to a degree or two; by hand
+// Confidence above which planes may contradict the device; by hand.
+constexpr double kSure = 0.5;
 
 }  // namespace
 

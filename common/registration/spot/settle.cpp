@@ -8,8 +8,8 @@
 namespace liloc {
 namespace {
 
-constexpr float kMargin_m = 0.8F;   // how far a climb may carry a surface into view
-constexpr std::size_t kStride = 2;  // as if half of the points were asked
+constexpr float kMargin_m = 0.8F;   // how far a climb may carry a surface into view; by hand
+constexpr std::size_t kStride = 2;  // as if half of the points were asked; by hand
 
 /// The score of poses near a guess, by few points.
 class Scorer {

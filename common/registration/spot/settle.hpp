@@ -4,10 +4,11 @@
 namespace liloc {
 
 /// How a pose climbs towards less contradiction.
+/// Defaults are by hand where nothing else is said.
 struct SettleOptions {
   double shift_m = 0.2, turn_rad = radians(4.0);  ///< first step of each axis; halved `halvings` times
   int halvings = 3, rounds = 4;
-  double hold = 0.003;    ///< RefineOptions::hold of what follows
+  double hold = 0.003;    ///< RefineOptions::hold of what follows; 0.01 was too stiff (DECISIONS.md)
   double as_good = 0.02;  ///< in points of score; so much the freer refinement may lose and is still preferred
   double clean = 0.998;   ///< overlap and map agreement from which a hypothesis needs no climb ...
   double clean_agree = 0.3;  ///< ... if so many device points agree

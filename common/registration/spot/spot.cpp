@@ -7,7 +7,7 @@
 namespace liloc {
 namespace {
 
-constexpr int kSketchIterations = 6;
+constexpr int kSketchIterations = 6;  // twelve won on some sites and lost on others, DECISIONS.md
 
 /// Moves each candidate nearer with few points, unless that makes it worse, as it does where surfaces do not
 /// hold a pose; and scores it.

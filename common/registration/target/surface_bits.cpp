@@ -7,7 +7,8 @@ namespace {
 
 constexpr float kCellsPerMetre = 4;  // by hand: a few points of the thinned cloud (0.1 m) share a cell
 constexpr float kReach_m = 0.1F;     // a voxel of the thinned clouds
-constexpr float kFacing = 0.8F;  // cosine of 37 degrees: half of the way to the next of the field's directions
+// Cosine of 37 degrees: half of the way to the next of the field's directions; by hand.
+constexpr float kFacing = 0.8F;
 
 std::uint64_t cell_of(const Eigen::Vector3f& p_map) {
   const Eigen::Vector3i cell = (p_map * kCellsPerMetre).array().floor().cast<int>();

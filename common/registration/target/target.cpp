@@ -10,12 +10,15 @@ namespace liloc {
 namespace {
 
 // Sums of the coarse field must fit a byte by eights; at 0.1 m a conflict is meant.
+// Free space at -10 and -40 by hand; from -30 to -50 made no difference (field/DECISIONS.md).
 constexpr FieldOptions kCoarseField{0.2, 0.13, -10, 40};  // padded for devices that see 8 m far
 constexpr FieldOptions kFineField{0.1, 0.08, -40, 0};
 
-constexpr double kBeside_m = 0.3;   // of what is seen of somebody from above: the rest, and a step in 0.1 s
-constexpr double kAround_m = 0.45;  // within which they hide a surface from the device, or are one themselves
-constexpr float kGone_m = 0.05F;
+// 0.2 and 0.4 lost, DECISIONS.md.
+constexpr double kBeside_m = 0.3;  // of what is seen of somebody from above: the rest, and a step in 0.1 s
+// Within which they hide a surface from the device, or are one themselves; by hand.
+constexpr double kAround_m = 0.45;
+constexpr float kGone_m = 0.05F;  // a voxel; by hand
 
 /// Whether a ceiling sensor looks through the place by now and none sees anything there.
 bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
@@ -73,7 +76,8 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
 /// Points with normals. A cloud that was thinned to few bytes is sparser than its voxels, and nearly all of it
 /// would hang in the air: there neighbourhoods widen until it holds together.
 Cloud with_normals_of(const Cloud& seen, double voxel_size_m) {
-  constexpr double kRadius = 2.5, kWiden = 1.5, kWidest = 8;  // in voxels
+  // In voxels; by hand; DECISIONS.md.
+  constexpr double kRadius = 2.5, kWiden = 1.5, kWidest = 8;
   double radius = kRadius;
   Cloud cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
   while (3 * cloud.size() < seen.size() && (radius *= kWiden) < kWidest)

@@ -98,8 +98,9 @@ struct Query {
   SightView view;  ///< rebuilt from the cloud; empty when no camera is known
 };
 
+/// Defaults are by hand where nothing else is said.
 struct QueryOptions {
-  double voxel_size_m = 0.05;
+  double voxel_size_m = 0.05;  ///< paper, section 3.1.5
   std::size_t sparse_points = 300;
   std::uint64_t seed = 1;
 };

@@ -18,8 +18,8 @@ struct CodecOptions {
   /// Draco: 6..16 over the cloud's longest side. RMSE is half a step: 3 mm (1.7 mm a coordinate) at 10 bits and
   /// 6 m.
   int quantization_bits = 10;
-  int octree_depth =
-      8;  ///< octree (paper, section 3.1.3): 4..12; a leaf is the longest side / 2^depth, and merges its points
+  /// Octree (paper, section 3.1.3): 4..12; a leaf is the longest side / 2^depth, and merges its points.
+  int octree_depth = 8;
 };
 
 // Memory bound: a 640x480 frame at 0.03 m has 12 000 points (paper, section 3.1.3); by hand.

@@ -13,10 +13,10 @@ struct BackgroundOptions {
   double tolerance_m = 0.06;    ///< depths this close, plus 1 % of the depth, are the same surface ...
   double tolerance_sigmas = 4;  ///< ... and those that the sensor's noise explains
   double forget_seconds = 1.0;  ///< a surface without any return for so long is forgotten ...
-  double forget_surprise =
-      7;                   ///< ... if that is so unlikely (-ln, 1 in 1100) for how often the pixel has returns
-  int most_averaged = 30;  ///< frames in a pixel's running mean
-  double hold_m = 0.01;    ///< means that moved by less, plus 0.3 % of the depth, are shown as they were
+  /// ... if that is so unlikely (-ln, 1 in 1100) for how often the pixel has returns.
+  double forget_surprise = 7;
+  int most_averaged = 30;       ///< frames in a pixel's running mean
+  double hold_m = 0.01;         ///< means that moved by less, plus 0.3 % of the depth, are shown as they were
   double fresh_share = 0.004;   ///< so much of the image changed: the room is to be derived anew at once ...
   double small_share = 0.0005;  ///< ... or with the next renewal
 };

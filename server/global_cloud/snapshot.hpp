@@ -18,8 +18,8 @@ struct SnapshotOptions {
   double voxel_size_m = 0.05;  ///< paper, section 3.1.5
   DepthOptions depth;
   int view_factor = 2;  ///< pixels of a ceiling image per pixel of its line-of-sight view
-  double feature_sampling =
-      0.5;  ///< share of the thinned GPC's points that get a descriptor (paper, section 5.2)
+  /// Share of the thinned GPC's points that get a descriptor (paper, section 5.2).
+  double feature_sampling = 0.5;
 };
 
 /// The surfaces before one LiDAR, as long as they do not change: shared by all frames of that time. The cloud

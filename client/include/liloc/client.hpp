@@ -62,7 +62,7 @@ struct Pose {
 /// external: the odometry is somebody else's (`push_odometry`); the device registers nothing by itself.
 enum class Local { cloud, inertial, dead_reckoning, external };
 
-/// Every default works in an office. New fields go last.
+/// Every default works in an office; they are by hand where nothing else is said. New fields go last.
 struct Options {
   std::string id;  ///< 1..63 of [A-Za-z0-9_-]; one run at a time per id
   Camera camera;
@@ -71,7 +71,7 @@ struct Options {
   std::vector<std::string> peers;        ///< hosts of the server; empty: this host
   double min_range_m = 0.25, max_range_m = 8.5;
   double voxel_size_m = 0.05;   ///< 0.01..0.5
-  int interval_ms = 800;        ///< upper bound between global registrations, 50..60000
+  int interval_ms = 800;        ///< upper bound between global registrations, 50..60000 (paper, section 7.2)
   int reply_timeout_ms = 4000;  ///< a request without an answer for so long counts as unanswered
   Local local = Local::cloud;
   std::optional<Pose> T_imu_sensor;  ///< there is an IMU exactly where this is set

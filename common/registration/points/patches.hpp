@@ -8,13 +8,13 @@ namespace liloc {
 
 /// Defaults are by hand where nothing else is said.
 struct PatchOptions {
-  double size_m =
-      0.4;  ///< of the cubes whose surfaces are taken for one thing; 0.6 is alike (scan/DECISIONS.md)
+  /// Of the cubes whose surfaces are taken for one thing; 0.6 is alike (scan/DECISIONS.md).
+  double size_m = 0.4;
   double common_sd_m = 0.008;  ///< of the error that all points of a patch share; 4 to 12 mm are alike
   double lasting = 5;  ///< that error hardly changes from frame to frame, so a patch tells so many times
                        ///< more of a step than it would with a new one in each frame
-  double deviations =
-      3;  ///< of what noise and the guess explain, where a patch begins to count less; 2 is alike
+  /// Of what noise and the guess explain, where a patch begins to count less; 2 is alike.
+  double deviations = 3;
 };
 
 /// Numbers points by the cube that they lie in and the way they face (six sides), from 0.

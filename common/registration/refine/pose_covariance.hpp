@@ -8,8 +8,8 @@ namespace liloc {
 struct CovarianceOptions {
   double max_pair_distance_m = 0.08;  ///< as refinement's last
   double min_normal_agreement = 0.5;
-  double patch_m =
-      0.4;  ///< points nearer to each other share their errors (of greatest likelihood, DECISIONS.md) ...
+  /// Points nearer to each other share their errors (of greatest likelihood, DECISIONS.md) ...
+  double patch_m = 0.4;
   double patch_bias_m = 0.001;   ///< ... and this one besides what their residuals show (likewise)
   double common_bias_m = 0.001;  ///< of all points alike: calibration, voxels, a sensor's range
   /// Of surroundings outside the frame's view: the device placed them by its odometry.

@@ -10,8 +10,8 @@ struct RefineOptions {
   int sparse_iterations = 10;      ///< few device points against the thinned target: far from the answer
   int coarse_iterations = 6;       ///< thinned clouds, at distances down to twice the end
   int fine_iterations = 8;         ///< thinned device cloud against the full target
-  double min_normal_agreement =
-      0.5;                       ///< cosine between the two normals of a pair; 0.8 was level (DECISIONS.md)
+  /// Cosine between the two normals of a pair; 0.8 was level (DECISIONS.md).
+  double min_normal_agreement = 0.5;
   double fit_distance_m = 0.05;  ///< a point with one of the target's so near counts for the fitness
   /// How tightly each of the three passes is held to where it starts: as by so large a share of all pairs, were
   /// they to hold that direction. Noisy normals on a bare floor walk further than its few real edges pull.

@@ -17,8 +17,8 @@ namespace liloc {
 struct JudgeOptions {
   double sketch_tolerance_m = 0.085, fine_tolerance_m = 0.05;
   double sketch_conflict_weight = 8;  ///< before a pose is refined it may still conflict a little
-  std::size_t sketch_most =
-      60;  ///< of the candidates, how many are refined with few points; as many as a search proposes
+  /// Of the candidates, how many are refined with few points; as many as a search proposes.
+  std::size_t sketch_most = 60;
   std::size_t refine_most = 8;  ///< of those, how many are refined fully
   double rival = 0.3;           ///< in points of score: so near the best, a candidate is worth any effort
   std::size_t keep = 5;

@@ -1,5 +1,5 @@
 # Tests of the C API, and of the package as a robot's project meets it: installed, moved, built against, run.
-# Each program that joins a DDS domain has its own, 171..178.
+# Each program that joins a DDS domain has its own, 171..181.
 add_executable(client_answering_server ${PROJECT_SOURCE_DIR}/client/api/tests/answering_server.cpp)
 target_link_libraries(client_answering_server PRIVATE liloc_warnings liloc::wire)
 liloc_test(NAME client_c_api SOURCES tests/c_api_test.cpp tests/c_api_running_test.cpp
@@ -33,6 +33,21 @@ add_test(NAME client_install_pkg_config COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/test
   ${installed}/${CMAKE_INSTALL_LIBDIR} ${CMAKE_CURRENT_BINARY_DIR}/consumer_pkg_config 173 174 ${sanitize})
 set_tests_properties(client_install_pkg_config PROPERTIES
   ENVIRONMENT "CC=${CMAKE_C_COMPILER};CXX=${CMAKE_CXX_COMPILER}")
+
+# What a robot's developer copies: built against the package, run against a server that answers.
+set(examples ${PROJECT_SOURCE_DIR}/client/examples)
+set(examples_built ${CMAKE_CURRENT_BINARY_DIR}/examples)
+add_test(NAME client_examples_build COMMAND ${CMAKE_CTEST_COMMAND}
+  --build-and-test ${examples} ${examples_built} --build-generator ${CMAKE_GENERATOR}
+  --build-options -DCMAKE_PREFIX_PATH=${installed}
+    -DCMAKE_C_COMPILER=${CMAKE_C_COMPILER} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+    -DCMAKE_C_FLAGS=${sanitize} -DCMAKE_CXX_FLAGS=${sanitize})
+add_test(NAME client_example_cpp COMMAND ${examples}/tests/locate_test.py 179 ${examples_built}/locate_cpp)
+add_test(NAME client_example_c COMMAND ${examples}/tests/locate_test.py 180 ${examples_built}/locate_c)
+set_tests_properties(client_examples_build PROPERTIES FIXTURES_SETUP client_examples)
+set_tests_properties(client_example_cpp client_example_c PROPERTIES FIXTURES_REQUIRED client_examples TIMEOUT 60
+  ENVIRONMENT "ANSWERING_SERVER=$<TARGET_FILE:client_answering_server>")
+set_tests_properties(client_examples_build PROPERTIES FIXTURES_REQUIRED client_installed TIMEOUT 60)
 
 set_tests_properties(client_install PROPERTIES FIXTURES_SETUP client_installed)
 set_tests_properties(client_install_symbols client_install_cmake client_install_pkg_config PROPERTIES

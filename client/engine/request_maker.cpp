@@ -11,9 +11,9 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kMostLocalPoses = 250;  // a message holds 256; older ones of a long silence are left out
-constexpr std::size_t kLpcPoints = 4000;      // 6 to 7 kB at 0.05 m
+constexpr std::size_t kLpcPoints = 4000;      // 8 to 9 kB at 0.05 m
 constexpr StampNs kSubmapAge = from_ms(10'000);  // since a surface was seen, where odometry is sure of itself
-constexpr std::size_t kSubmapPoints = 2000;      // about 3 kB at 0.05 m
+constexpr std::size_t kSubmapPoints = 2000;      // about 4 kB at 0.05 m
 constexpr std::size_t kFewestSubmapPoints = 60;  // fewer tell nothing
 constexpr double kSteadySdM = 0.01, kSteadySdRad = radians(0.4);  // of the motion between two requests
 constexpr double kOdomSdM = 0.002, kOdomSdRad = 0.001, kOdomSdShare = 0.005;  // clocks; scale of path and turn
@@ -54,8 +54,8 @@ void RequestMaker::add_surroundings(const LocalMap& surroundings, StampNs since_
     return extra.size() < kFewestSubmapPoints ? Cloud{} : extra;
   };
   const std::size_t left = options_.request_bytes - request.lpc.bytes.size();
-  auto extra =
-      encode_within(left, points_at(options_.voxel_size_m, kSubmapPoints), 2 * options_.voxel_size_m, thinned);
+  auto extra = encode_within(left, points_at(options_.voxel_size_m, kSubmapPoints),
+                             {.codec = request.lpc.codec, .voxel_size_m = 2 * options_.voxel_size_m}, thinned);
   if (extra) request.extra = std::move(*extra);  // otherwise the frame says it all
 }
 
@@ -65,7 +65,7 @@ Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap
     return voxel_downsample(cloud_sensor, options_.voxel_size_m, most);
   };
   auto lpc = encode_within(options_.request_bytes, points_at(options_.voxel_size_m, kLpcPoints),
-                           options_.voxel_size_m, thinned);
+                           {.codec = options_.codec, .voxel_size_m = options_.voxel_size_m}, thinned);
   if (!lpc) return tl::unexpected(lpc.error());
   SpotRequest r;
   r.client_id = options_.client_id;

@@ -141,9 +141,10 @@ void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
       ->check(in_range(2000, 60'000))
       ->capture_default_str();
   method
-      ->add_option("--codec", given.codec,
-                   "How clouds travel: draco, voxel (for thin links) or octree; a server that does not read it gets "
-                   "another that it does")
+      ->add_option(
+          "--codec", given.codec,
+          "How clouds travel: draco, voxel (for thin links) or octree; a server that does not read it gets "
+          "another that it does")
       ->check(command::one_of({"draco", "voxel", "octree"}))
       ->capture_default_str();
   method->add_flag("--cold", c.cold, "Each request is answered on its own");

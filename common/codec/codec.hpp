@@ -12,7 +12,7 @@ namespace liloc {
 
 struct CodecOptions {
   CloudCodec codec = CloudCodec::draco;
-  double voxel_size_m = 0.05;   ///< voxel: 0.01..1, the grid that the points lie on, best one in each cell
+  double voxel_size_m = 0.05;  ///< voxel: 0.01..1, the grid that the points lie on, best one in each cell
   /// Draco and voxel: the step of a coordinate, 0.0001..1; RMSE is half of it (1.5 mm). It is coarser where
   /// the code cannot hold it: voxel has 64 steps to a voxel, Draco 65535 to the cloud's longest side.
   double resolution_m = 0.003;

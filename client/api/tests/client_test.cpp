@@ -124,10 +124,9 @@ TEST(Client, TracksCoastsAndComesBackWithTheServer) {
   ASSERT_TRUE(made) << made.error();
   Client& client = *made.value();
   Feeder feeder(client);
-  ASSERT_TRUE(
-      feeder.until([](const auto& pose) {
-        return pose.state == State::tracking && pose.T_map_sensor && pose.server_connected;
-      }));
+  ASSERT_TRUE(feeder.until([](const auto& pose) {
+    return pose.state == State::tracking && pose.T_map_sensor && pose.server_connected;
+  }));
   const auto pose = client.newest();
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(pose.T_map_sensor->translation_m[i], pose.T_odom_sensor.translation_m[i] + i + 1, 1e-9);

@@ -54,8 +54,8 @@ typedef enum liloc_local {
   LILOC_LOCAL_EXTERNAL = 3 /* the odometry is somebody else's: liloc_client_push_odometry */
 } liloc_local;
 
-/* How a request's clouds travel: draco at 1.5 mm; voxel for thin links, a quarter fewer bytes at 1.5 mm; octree as the
- * method's paper compresses, at 12 mm. A server that does not read it gets another that it does. */
+/* How a request's clouds travel: draco, 7 to 8 kB a frame at 1.5 mm RMSE; voxel, for thin links, 5 to 7 kB at 1.5 mm;
+ * octree, for comparison, 7 to 8 kB at 5 to 11 mm. A server that does not read it gets another that it does. */
 typedef enum liloc_codec { LILOC_CODEC_DRACO = 1, LILOC_CODEC_OCTREE = 2, LILOC_CODEC_VOXEL = 3 } liloc_codec;
 
 typedef enum liloc_state {

@@ -75,7 +75,8 @@ TEST_P(CodecSeeds, DracoAndVoxelErrByHalfTheirResolution) {
       const auto decoded = decode(*encoded);
       ASSERT_TRUE(decoded) << decoded.error().message;
       EXPECT_EQ(decoded->size(), cloud.size());
-      EXPECT_NEAR(rmse_m(cloud, *decoded), 0.5 * resolution_m, 0.02 * resolution_m)  // uniform: step * sqrt(3 / 12)
+      EXPECT_NEAR(rmse_m(cloud, *decoded), 0.5 * resolution_m,
+                  0.02 * resolution_m)  // uniform: step * sqrt(3 / 12)
           << name_of(codec) << resolution_m;
     }
 }
@@ -120,8 +121,8 @@ TEST_P(CodecSeeds, VoxelKeepsManyPointsOfOneVoxelAndAnyPlace) {
   for (int i = 0; i < 50; ++i) cloud.points.emplace_back(place(random), place(random), place(random));
   for (int i = 0; i < 5; ++i) cloud.points.push_back(cloud.points.front());
   for (const double voxel_size_m : {0.01, 0.05, 0.5}) {
-    const auto encoded = encode(
-        cloud, {.codec = CloudCodec::voxel, .voxel_size_m = voxel_size_m, .resolution_m = 0.02});
+    const auto encoded =
+        encode(cloud, {.codec = CloudCodec::voxel, .voxel_size_m = voxel_size_m, .resolution_m = 0.02});
     ASSERT_TRUE(encoded) << encoded.error().message;
     const auto decoded = decode(*encoded);
     ASSERT_TRUE(decoded) << decoded.error().message;

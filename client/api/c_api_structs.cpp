@@ -40,6 +40,8 @@ Status check(const liloc_client_options& o) {
     return fail("options.domain is {}; must be 0..{}", o.domain, kMaxDomain);
   if (o.local < LILOC_LOCAL_CLOUD || o.local > LILOC_LOCAL_EXTERNAL)
     return fail("options.local is {}; must be a liloc_local, 0..3", o.local);
+  if (o.codec < 0 || o.codec > LILOC_CODEC_VOXEL)
+    return fail("options.codec is {}; must be a liloc_codec, 1..3", o.codec);
   if (o.peers == nullptr && o.peer_count > 0)
     return fail("options.peers is NULL, options.peer_count is {}; set both or neither", o.peer_count);
   for (std::size_t i = 0; i < o.peer_count; ++i)
@@ -80,6 +82,7 @@ liloc_client_options default_options() {
   o.searching_interval_ms = d.searching_interval_ms;
   o.lost_sd_m = d.lost_sd_m;
   o.lost_sd_deg = d.lost_sd_deg;
+  o.codec = static_cast<std::int32_t>(d.codec);
   return o;
 }
 
@@ -114,6 +117,7 @@ Result<Options> options_from(const liloc_client_options* options, std::size_t si
   out.searching_interval_ms = o.searching_interval_ms;
   if (o.lost_sd_m != 0) out.lost_sd_m = o.lost_sd_m;  // 0 from programs older than the fields
   if (o.lost_sd_deg != 0) out.lost_sd_deg = o.lost_sd_deg;
+  if (o.codec != 0) out.codec = static_cast<Codec>(o.codec);
   return out;
 }
 
@@ -179,6 +183,9 @@ liloc_stats to_c(const Stats& stats) {
 static_assert(LILOC_LOCAL_EXTERNAL == static_cast<int>(Local::external));
 static_assert(LILOC_LOCAL_DEAD_RECKONING == static_cast<int>(Local::dead_reckoning));
 static_assert(LILOC_LOCAL_INERTIAL == static_cast<int>(Local::inertial));
+static_assert(LILOC_CODEC_DRACO == static_cast<int>(Codec::draco));
+static_assert(LILOC_CODEC_OCTREE == static_cast<int>(Codec::octree));
+static_assert(LILOC_CODEC_VOXEL == static_cast<int>(Codec::voxel));
 static_assert(LILOC_LOST == static_cast<int>(State::lost));
 static_assert(LILOC_COASTING == static_cast<int>(State::coasting));
 static_assert(LILOC_TRACKING == static_cast<int>(State::tracking));

@@ -7,6 +7,7 @@
 #include "client/api/public_types.hpp"
 #include "common/base/log.hpp"
 #include "common/wire/client_link.hpp"
+#include "common/wire/status.hpp"
 
 namespace liloc::client {
 namespace {
@@ -72,7 +73,10 @@ Status Client::Impl::connect(const Options& options) {
   auto linked = wire::ClientLink::create(*dispatcher, id, std::move(callbacks));
   if (!linked) return tl::unexpected(linked.error());
   link = std::move(*linked);
-  return {};
+  // What cannot be read of a status says nothing of the codes; replies tell of another version.
+  return wire::subscribe_status(*dispatcher, [this](const Result<wire::ServerStatus>& status) {
+    if (status) session->add_server(status->server_id, status->codecs);
+  });
 }
 
 /// Frames first, then requests, then the network: the session's threads still use the link while they end.

@@ -28,6 +28,18 @@ LocalMethod to_domain(Local local) {
   return LocalMethod::cloud;
 }
 
+CloudCodec to_domain(Codec codec) {
+  switch (codec) {
+    case Codec::draco:
+      return CloudCodec::draco;
+    case Codec::octree:
+      return CloudCodec::octree;
+    case Codec::voxel:
+      return CloudCodec::voxel;
+  }
+  return CloudCodec::draco;
+}
+
 State to_public(Tracking tracking) {
   switch (tracking) {
     case Tracking::searching:
@@ -115,6 +127,7 @@ Result<SessionOptions> to_session(const Options& o) {
   s.engine.searching_interval_ns = from_ms(o.searching_interval_ms);
   s.engine.lost_sd_m = o.lost_sd_m;
   s.engine.lost_sd_rad = radians(o.lost_sd_deg);
+  s.engine.codec = to_domain(o.codec);
   s.queue_frames = o.queue_frames;
   s.trace_folder = o.trace_folder;
   return s;

@@ -142,9 +142,14 @@ Status settle(const GivenOptions& given, DaemonOptions& options) {
   const auto method = methods.find(given.local);
   if (method == methods.end())
     return fail("--local is '{}'; must be cloud, inertial or dead-reckoning", given.local);
+  static const std::map<std::string, client::Codec> codecs{
+      {"draco", client::Codec::draco}, {"voxel", client::Codec::voxel}, {"octree", client::Codec::octree}};
+  const auto codec = codecs.find(given.codec);
+  if (codec == codecs.end()) return fail("--codec is '{}'; must be draco, voxel or octree", given.codec);
   const auto level = log::level_from(given.log_level);
   if (!level) return fail("--log-level: {}", level.error().message);
   options.client.local = method->second;
+  options.client.codec = codec->second;
   options.log_level = *level;
   if (const Status ok =
           settle_pose("imu", given.imu_translation, given.imu_rotation, options.client.T_imu_sensor);

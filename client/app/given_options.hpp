@@ -9,7 +9,7 @@ namespace liloc {
 /// What the command line or the file gave that is no option yet: names and numbers as they were typed, empty
 /// where nothing was.
 struct GivenOptions {
-  std::string local = "cloud", log_level = "info";
+  std::string local = "cloud", log_level = "info", codec = "draco";
   std::vector<double> imu_translation, imu_rotation, base_translation, base_rotation;
   std::vector<double> points_view{96, 72, 90, 74};
   std::string depth, camera_info, points, imu, odometry, pose, odom, diagnostics;

@@ -140,6 +140,13 @@ void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
                    "Most, of a request's clouds: the surroundings give way first, then the frame is thinned")
       ->check(in_range(2000, 60'000))
       ->capture_default_str();
+  method
+      ->add_option(
+          "--codec", given.codec,
+          "How clouds travel: draco, voxel (for thin links) or octree; a server that does not read it gets "
+          "another that it does")
+      ->check(command::one_of({"draco", "voxel", "octree"}))
+      ->capture_default_str();
   method->add_flag("--cold", c.cold, "Each request is answered on its own");
   method->add_option("--seed", c.seed, "Of all randomness")->check(command::any_seed())->capture_default_str();
 

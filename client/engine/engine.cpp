@@ -245,6 +245,10 @@ Result<FrameResult> Engine::add_points(StampNs stamp_ns, const Cloud& cloud_sens
   return impl_->add(depth_of_points(seen, o.camera, stamp_ns), &seen);
 }
 
+void Engine::encode_as(CloudCodec codec) {
+  impl_->requests.encode_as(codec);
+}
+
 std::optional<SpotRequest> Engine::take_request() {
   return std::exchange(impl_->request, std::nullopt);
 }

@@ -51,6 +51,8 @@ class Engine {
   [[nodiscard]] Result<FrameResult> add_points(StampNs stamp_ns, const Cloud& cloud_sensor);
   /// Errors: the method is not external, not finite, a stamp that StampWatch refuses.
   [[nodiscard]] Status add_odometry(const OdometrySample& sample);
+  /// Clouds of the requests from the next frame on; as the options say until then.
+  void encode_as(CloudCodec codec);
   /// The request that the last frame made due, if any; taken once.
   [[nodiscard]] std::optional<SpotRequest> take_request();
   /// The requests that have stayed without an answer for too long since the last call, by seq.

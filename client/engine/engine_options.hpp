@@ -7,6 +7,7 @@
 #include "common/base/stamp.hpp"
 #include "common/geometry/camera.hpp"
 #include "common/geometry/pose.hpp"
+#include "common/protocol/spot.hpp"
 
 namespace liloc {
 
@@ -28,7 +29,8 @@ struct EngineOptions {
   Pose T_base_sensor = Pose::Identity();  ///< with external odometry: the sensor on what the odometry moves
   /// Lower bound between registrations while nothing is verified; 0: a quarter of the interval. Cold: none.
   StampNs searching_interval_ns = 0;
-  std::size_t request_bytes = 15'000;  ///< most, of a request's clouds: the surroundings give way first
+  std::size_t request_bytes = 15'000;    ///< most, of a request's clouds: the surroundings give way first
+  CloudCodec codec = CloudCodec::draco;  ///< of a request's clouds
   /// Standard deviations beyond which the device is lost: the paper counts poses off by so much as wrong
   /// (section 3.1.2).
   double lost_sd_m = 0.3, lost_sd_rad = radians(10);

@@ -12,10 +12,10 @@ namespace {
 
 // A message holds 256; older ones of a long silence are left out; by hand.
 constexpr std::size_t kMostLocalPoses = 250;
-constexpr std::size_t kLpcPoints = 4000;  // 6 to 7 kB at 0.05 m; by hand, DECISIONS.md
+constexpr std::size_t kLpcPoints = 4000;  // 8 to 9 kB at 0.05 m; by hand, DECISIONS.md
 // Since a surface was seen, where odometry is sure of itself; by hand.
 constexpr StampNs kSubmapAge = from_ms(10'000);
-constexpr std::size_t kSubmapPoints = 2000;      // about 3 kB at 0.05 m; by hand
+constexpr std::size_t kSubmapPoints = 2000;      // about 4 kB at 0.05 m; by hand
 constexpr std::size_t kFewestSubmapPoints = 60;  // fewer tell nothing; by hand
 // By hand: 1.5 cm and 0.2 degrees lost, DECISIONS.md.
 constexpr double kSteadySdM = 0.01, kSteadySdRad = radians(0.4);  // of the motion between two requests
@@ -58,8 +58,8 @@ void RequestMaker::add_surroundings(const LocalMap& surroundings, StampNs since_
     return extra.size() < kFewestSubmapPoints ? Cloud{} : extra;
   };
   const std::size_t left = options_.request_bytes - request.lpc.bytes.size();
-  auto extra =
-      encode_within(left, points_at(options_.voxel_size_m, kSubmapPoints), 2 * options_.voxel_size_m, thinned);
+  auto extra = encode_within(left, points_at(options_.voxel_size_m, kSubmapPoints),
+                             {.codec = request.lpc.codec, .voxel_size_m = 2 * options_.voxel_size_m}, thinned);
   if (extra) request.extra = std::move(*extra);  // otherwise the frame says it all
 }
 
@@ -69,7 +69,7 @@ Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap
     return voxel_downsample(cloud_sensor, options_.voxel_size_m, most);
   };
   auto lpc = encode_within(options_.request_bytes, points_at(options_.voxel_size_m, kLpcPoints),
-                           options_.voxel_size_m, thinned);
+                           {.codec = options_.codec, .voxel_size_m = options_.voxel_size_m}, thinned);
   if (!lpc) return tl::unexpected(lpc.error());
   SpotRequest r;
   r.client_id = options_.client_id;

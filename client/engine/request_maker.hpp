@@ -17,6 +17,8 @@ class RequestMaker {
   void travelled(StampNs stamp_ns, const OdometryStep& step, bool informative);
   /// Of the motion since the last request.
   [[nodiscard]] MotionSd motion_sd() const;
+  /// From the next request on; as the options say until then.
+  void encode_as(CloudCodec codec) { options_.codec = codec; }
   /// The request for the frame that travelled last: `cloud_sensor` is all it shows, `surroundings` what the
   /// device has seen around it (left out as the options say), `imu` may be null. A device that is `located`
   /// sends only surroundings that its odometry has placed well; one that is not, all it has. A frame that can

@@ -21,8 +21,15 @@ Local local_of(const std::string& name) {
   throw py::value_error("local is '" + name + "'; must be 'cloud', 'inertial', 'dead_reckoning' or 'external'");
 }
 
+Codec codec_of(const std::string& name) {
+  if (name == "draco") return Codec::draco;
+  if (name == "voxel") return Codec::voxel;
+  if (name == "octree") return Codec::octree;
+  throw py::value_error("codec is '" + name + "'; must be 'draco', 'voxel' or 'octree'");
+}
+
 std::string text_of(const PoseUpdate& update) {
-  const char* const states[] = {"SEARCHING", "TRACKING", "COASTING"};
+  const char* const states[] = {"SEARCHING", "TRACKING", "COASTING", "LOST"};
   return "<liloc.PoseUpdate of " + std::to_string(update.stamp_ns) + " ns, " +
          states[static_cast<int>(update.state)] + (update.T_map_sensor ? ", located>" : ", not located>");
 }
@@ -102,10 +109,11 @@ void declare_answers(py::module_& module) {
       .def_readonly("advice", &Reply::advice);
 }
 
-std::shared_ptr<PythonClient> make_client(Options options, const std::string& local,
+std::shared_ptr<PythonClient> make_client(Options options, const std::string& local, const std::string& codec,
                                           const py::object& T_imu_sensor, const py::object& T_base_sensor,
                                           const py::object& on_pose, const py::object& on_reply) {
   options.local = local_of(local);
+  options.codec = codec_of(codec);
   if (!T_imu_sensor.is_none()) options.T_imu_sensor = from_matrix(T_imu_sensor, "T_imu_sensor");
   if (!T_base_sensor.is_none()) options.T_base_sensor = from_matrix(T_base_sensor, "T_base_sensor");
   auto client = std::make_shared<PythonClient>(options, callback_of(on_pose, "on_pose"),
@@ -123,8 +131,8 @@ void declare_client(py::module_& module) {
                        const py::object& T_imu_sensor, double still_seconds, bool cold, std::uint64_t seed,
                        std::size_t queue_frames, std::string trace_folder, const py::object& T_base_sensor,
                        double cpu_share, bool submap, std::size_t request_bytes, int searching_interval_ms,
-                       double lost_sd_m, double lost_sd_deg, const py::object& on_pose,
-                       const py::object& on_reply) {
+                       double lost_sd_m, double lost_sd_deg, const std::string& codec,
+                       const py::object& on_pose, const py::object& on_reply) {
              Options o;
              o.id = std::move(id);
              o.camera = camera;
@@ -147,7 +155,7 @@ void declare_client(py::module_& module) {
              o.searching_interval_ms = searching_interval_ms;
              o.lost_sd_m = lost_sd_m;
              o.lost_sd_deg = lost_sd_deg;
-             return make_client(std::move(o), local, T_imu_sensor, T_base_sensor, on_pose, on_reply);
+             return make_client(std::move(o), local, codec, T_imu_sensor, T_base_sensor, on_pose, on_reply);
            }),
            "id"_a, "camera"_a, py::kw_only(), "domain"_a = d.domain,
            "network_interface"_a = d.network_interface, "peers"_a = d.peers, "min_range_m"_a = d.min_range_m,
@@ -157,7 +165,8 @@ void declare_client(py::module_& module) {
            "queue_frames"_a = d.queue_frames, "trace_folder"_a = d.trace_folder, "T_base_sensor"_a = py::none(),
            "cpu_share"_a = d.cpu_share, "submap"_a = d.submap, "request_bytes"_a = d.request_bytes,
            "searching_interval_ms"_a = d.searching_interval_ms, "lost_sd_m"_a = d.lost_sd_m,
-           "lost_sd_deg"_a = d.lost_sd_deg, "on_pose"_a = py::none(), "on_reply"_a = py::none())
+           "lost_sd_deg"_a = d.lost_sd_deg, "codec"_a = "draco", "on_pose"_a = py::none(),
+           "on_reply"_a = py::none())
       .def("push_depth", &PythonClient::push_depth, "depth"_a, "stamp_ns"_a)
       .def("push_imu", &PythonClient::push_imu, "stamps_ns"_a, "samples"_a)
       .def("push_points", &PythonClient::push_points, "points"_a, "stamp_ns"_a)

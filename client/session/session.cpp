@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "client/engine/trace.hpp"
+#include "client/session/codec_choice.hpp"
 #include "client/session/frame_budget.hpp"
 #include "client/session/sample_inbox.hpp"
 #include "client/session/server_choice.hpp"
@@ -46,6 +47,8 @@ struct Session::Impl {
       : options(std::move(o)),
         callbacks(std::move(c)),
         report(options.engine.client_id),
+        codecs(options.engine.codec),
+        codec(options.engine.codec),
         engine(options.engine),
         budget(options.cpu_share),
         frames(options.queue_frames),
@@ -62,6 +65,7 @@ struct Session::Impl {
   void keep_time(const SensorFrame& input, bool set_back);
   [[nodiscard]] std::optional<SpotRequest> take_request();
   void send(SpotRequest request);
+  [[nodiscard]] CloudCodec choose_codec();
   [[nodiscard]] bool follows(const SpotReply& reply);
   [[nodiscard]] const std::string& id() const { return options.engine.client_id; }
 
@@ -74,6 +78,8 @@ struct Session::Impl {
 
   std::mutex servers_mutex;
   ServerChoice servers;
+  CodecChoice codecs;
+  CloudCodec codec;  ///< of the newest requests
 
   std::mutex engine_mutex;  ///< held for one frame or one reply
   Engine engine;
@@ -155,6 +161,7 @@ void Session::Impl::process(const SensorFrame& input) {
     samples.await_odometry(input.image.stamp_ns, kOdometryWait);
   std::unique_lock lock(engine_mutex);
   hand_over_samples();
+  engine.encode_as(choose_codec());
   const Result<FrameResult> frame = add(input);
   if (!frame) {
     report.frame_refused(frame.error().message);
@@ -180,6 +187,15 @@ void Session::Impl::send(SpotRequest request) {
   if (sent) return;
   log::debug("{}: request {} not sent: {}", id(), request.seq, sent.error().message);
   report.count(&SessionStats::requests_unsent);
+}
+
+CloudCodec Session::Impl::choose_codec() {
+  const std::scoped_lock lock(servers_mutex);
+  const CloudCodec before = std::exchange(codec, codecs.choose(servers.followed(), now()));
+  if (codec != before)
+    log::warning("{}: clouds travel as {} in place of {}: that is what the servers in sight read", id(),
+                 name_of(codec), name_of(before));
+  return codec;
 }
 
 bool Session::Impl::follows(const SpotReply& reply) {
@@ -255,6 +271,11 @@ Status Session::push_imu(const ImuSample& sample) {
     return fail("{}: IMU sample at {} ns is not finite", impl_->id(), sample.stamp_ns);
   }
   return impl_->push(sample, "IMU", &SessionStats::imu_refused);
+}
+
+void Session::add_server(const std::string& server_id, const std::vector<CloudCodec>& reads) {
+  const std::scoped_lock lock(impl_->servers_mutex);
+  impl_->codecs.heard(server_id, reads, now());
 }
 
 bool Session::add_reply(const SpotReply& reply) {

@@ -44,6 +44,9 @@ class Session {
   /// Handed to the engine before the next frame. Errors: no IMU in the options, not finite, stopped, the
   /// stamp as above.
   [[nodiscard]] Status push_imu(const ImuSample& sample);
+  /// What a server says it reads; requests from the next frame on travel as something that it does
+  /// (CodecChoice).
+  void add_server(const std::string& server_id, const std::vector<CloudCodec>& reads);
   /// Waits at most for the frame in work. False where another server's answers count (ServerChoice).
   bool add_reply(const SpotReply& reply);
 

@@ -1,5 +1,6 @@
 #include "common/codec/codec.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/codec/draco.hpp"
@@ -18,27 +19,25 @@ Status check(const Cloud& cloud, std::string_view what) {
 }
 
 Status check(const CodecOptions& options) {
-  if (options.quantization_bits < 6 || options.quantization_bits > 16)
-    return fail("quantization_bits is {}, must be 6..16", options.quantization_bits);
   if (options.octree_depth < 4 || options.octree_depth > 12)
     return fail("octree_depth is {}, must be 4..12", options.octree_depth);
   if (!(options.voxel_size_m >= 0.01 && options.voxel_size_m <= 1))
     return fail("voxel_size_m is {}, must be 0.01..1", options.voxel_size_m);
-  if (!(options.resolution_m >= options.voxel_size_m / codec::kMaxSteps))
-    return fail("resolution_m is {}, must be {} (a {}th of a voxel) or more", options.resolution_m,
-                options.voxel_size_m / codec::kMaxSteps, codec::kMaxSteps);
+  if (!(options.resolution_m >= 0.0001 && options.resolution_m <= 1))
+    return fail("resolution_m is {}, must be 0.0001..1", options.resolution_m);
   return {};
 }
 
 Result<std::vector<std::uint8_t>> bytes_of(const Cloud& cloud, const CodecOptions& options) {
   switch (options.codec) {
     case CloudCodec::draco:
-      return codec::encode_draco(cloud, options.quantization_bits);
+      return codec::encode_draco(cloud, options.resolution_m);
     case CloudCodec::octree:
       return codec::encode_octree(cloud, options.octree_depth);
     case CloudCodec::voxel:
-      return codec::encode_voxel(cloud, options.voxel_size_m,
-                                 static_cast<int>(std::ceil(options.voxel_size_m / options.resolution_m)));
+      return codec::encode_voxel(
+          cloud, options.voxel_size_m,
+          std::min(codec::kMaxSteps, static_cast<int>(std::ceil(options.voxel_size_m / options.resolution_m))));
   }
   return fail("codec is {}, must be 1 (Draco), 2 (octree) or 3 (voxel)", static_cast<int>(options.codec));
 }

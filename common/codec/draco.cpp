@@ -4,6 +4,7 @@
 #include <draco/compression/encode.h>
 #include <draco/point_cloud/point_cloud_builder.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
@@ -19,6 +20,7 @@ constexpr std::array<std::uint8_t, 11> kMagic = {'D', 'R', 'A', 'C', 'O', 2, 3, 
 constexpr std::array<std::uint8_t, 7> kAttribute = {1, 1, 0, 9, 3, 0, 0};
 constexpr std::size_t kCountAt = 11, kAttributeAt = 15, kLevelAt = 22, kBitsAt = 23, kSecondCountAt = 27;
 constexpr std::size_t kHeaderBytes = 31;
+constexpr int kFewestBits = 1, kMostBits = 16;
 
 std::uint32_t u32_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
   return static_cast<std::uint32_t>(bytes[at]) | static_cast<std::uint32_t>(bytes[at + 1]) << 8 |
@@ -29,7 +31,7 @@ Result<std::uint32_t> checked_count(const std::vector<std::uint8_t>& bytes, std:
   if (bytes.size() < kHeaderBytes) return fail("Draco stream of {} bytes is cut short", bytes.size());
   if (!std::equal(kMagic.begin(), kMagic.end(), bytes.begin()) ||
       !std::equal(kAttribute.begin(), kAttribute.end(), bytes.begin() + kAttributeAt) || bytes[kLevelAt] > 6 ||
-      u32_at(bytes, kBitsAt) > 16)
+      u32_at(bytes, kBitsAt) > kMostBits)
     return fail("not a Draco kd-tree cloud of positions; encode with liloc::encode");
   const std::uint32_t count = u32_at(bytes, kCountAt);
   if (count == 0 || count > max_points)
@@ -39,9 +41,27 @@ Result<std::uint32_t> checked_count(const std::vector<std::uint8_t>& bytes, std:
   return count;
 }
 
+/// The cube that is cut into steps, counted from the lower corner of the cloud.
+struct Grid {
+  Eigen::Vector3f corner = Eigen::Vector3f::Zero();
+  float side_m = 0;
+  int bits = kFewestBits;
+};
+
+Grid grid_of(const Cloud& cloud, double resolution_m) {
+  Eigen::AlignedBox3f box;
+  for (const auto& p : cloud.points) box.extend(p);
+  Grid grid{box.min(), 0, kFewestBits};
+  const double side_m = static_cast<double>(box.sizes().maxCoeff());
+  const auto steps = [&] { return static_cast<double>((1U << grid.bits) - 1); };
+  while (steps() * resolution_m < side_m && grid.bits < kMostBits) ++grid.bits;
+  grid.side_m = static_cast<float>(std::max(side_m, steps() * resolution_m));
+  return grid;
+}
+
 }  // namespace
 
-Result<std::vector<std::uint8_t>> encode_draco(const Cloud& cloud, int quantization_bits) {
+Result<std::vector<std::uint8_t>> encode_draco(const Cloud& cloud, double resolution_m) {
   draco::PointCloudBuilder builder;
   builder.Start(static_cast<draco::PointIndex::ValueType>(cloud.size()));
   const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
@@ -50,7 +70,9 @@ Result<std::vector<std::uint8_t>> encode_draco(const Cloud& cloud, int quantizat
   const auto points = builder.Finalize(false);  // equal points stay: the count is the caller's
   draco::Encoder encoder;
   encoder.SetEncodingMethod(draco::POINT_CLOUD_KD_TREE_ENCODING);
-  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, quantization_bits);
+  const Grid grid = grid_of(cloud, resolution_m);
+  encoder.SetAttributeExplicitQuantization(draco::GeometryAttribute::POSITION, grid.bits, 3, grid.corner.data(),
+                                           grid.side_m);
   encoder.SetSpeedOptions(0, 0);
   draco::EncoderBuffer buffer;
   if (const auto status = encoder.EncodePointCloudToBuffer(*points, &buffer); !status.ok())

@@ -1,8 +1,26 @@
 #include "common/protocol/spot.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace liloc {
+
+std::string_view name_of(CloudCodec codec) {
+  switch (codec) {
+    case CloudCodec::draco:
+      return "draco";
+    case CloudCodec::octree:
+      return "octree";
+    case CloudCodec::voxel:
+      return "voxel";
+  }
+  return "unknown";
+}
+
+std::optional<CloudCodec> codec_from(std::string_view name) {
+  const auto* found = std::ranges::find(kCloudCodecs, name, [](CloudCodec codec) { return name_of(codec); });
+  return found == kCloudCodecs.end() ? std::nullopt : std::optional(*found);
+}
 
 std::string_view name_of(SpotStatus status) {
   switch (status) {

@@ -1,5 +1,6 @@
 #pragma once
 // What a device asks and what the server answers, as domain types: no DDS, no Draco. common/wire carries them.
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,11 +16,17 @@ namespace liloc {
 /// Raised when a message changes its meaning; a server answers other versions with Reason::protocol_version.
 constexpr std::uint16_t kProtocolVersion = 2;
 
+/// How a cloud travels. Ids are added, never reused.
 enum class CloudCodec : std::uint8_t { draco = 1, octree = 2, voxel = 3 };
+/// In the order in which a client tries them.
+constexpr std::array<CloudCodec, 3> kCloudCodecs{CloudCodec::draco, CloudCodec::voxel, CloudCodec::octree};
+[[nodiscard]] std::string_view name_of(CloudCodec codec);
+/// By its name; empty where there is none of that name.
+[[nodiscard]] std::optional<CloudCodec> codec_from(std::string_view name);
 
 /// A compressed cloud in the sensor frame.
 struct EncodedCloud {
-  CloudCodec codec = CloudCodec::voxel;
+  CloudCodec codec = CloudCodec::draco;
   std::vector<std::uint8_t> bytes;
 };
 

@@ -46,6 +46,8 @@ StatusSample to_wire(const ServerStatus& status) {
   m.answered = status.answered;
   m.verified = status.verified;
   m.refused = status.refused;
+  for (const CloudCodec codec : status.codecs) sample.codecs.push_back(static_cast<std::uint8_t>(codec));
+  lend(m.codecs, sample.codecs);
   return sample;
 }
 
@@ -74,6 +76,8 @@ Result<ServerStatus> from_wire(const liloc_msg_ServerStatus& message) {
   status.answered = message.answered;
   status.verified = message.verified;
   status.refused = message.refused;
+  for (std::uint32_t i = 0; i < message.codecs._length; ++i)  // some may be newer than this program
+    status.codecs.push_back(static_cast<CloudCodec>(message.codecs._buffer[i]));
   return status;
 }
 

@@ -11,6 +11,7 @@ namespace liloc::wire {
 struct StatusSample {
   liloc_msg_ServerStatus message{};
   std::vector<liloc_msg_LidarHealth> lidars;
+  std::vector<std::uint8_t> codecs;
 };
 /// Lends nothing of `status`; of the LiDARs the first 64 go.
 [[nodiscard]] StatusSample to_wire(const ServerStatus& status);

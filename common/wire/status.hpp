@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/stamp.hpp"
+#include "common/protocol/spot.hpp"
 #include "common/wire/dispatcher.hpp"
 
 namespace liloc::wire {
@@ -30,6 +31,7 @@ struct ServerStatus {
   std::vector<LidarHealth> lidars;  ///< at most 64
   std::uint32_t clients = 0, queued = 0;
   std::uint64_t answered = 0, verified = 0, refused = 0;  ///< since the start; answered counts every reply
+  std::vector<CloudCodec> codecs;                         ///< of clouds, that it reads; empty: it does not say
 };
 
 class StatusPublisher {

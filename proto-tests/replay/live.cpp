@@ -39,6 +39,8 @@ FleetCommand fleet_command(const Recording& recording, const ReplayOptions& opti
                         fmt::format("{}", options.searching_interval_ms),
                         "--local",
                         options.local,
+                        "--codec",
+                        options.codec,
                         "--seed",
                         seed};
     if (options.cold) client.arguments.emplace_back("--cold");

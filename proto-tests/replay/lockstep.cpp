@@ -41,6 +41,7 @@ EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions&
   engine.local = *local_method_from(options.local);
   engine.cold = options.cold;
   engine.submap = options.submap;
+  engine.codec = *codec_from(options.codec);
   engine.seed = options.seed;
   return engine;
 }

@@ -33,6 +33,7 @@ Result<ReplayOptions> ReplayOptions::validated() const {
   if (const auto known = icp_from(icp); !icp.empty() && !known) return tl::unexpected(known.error());
   if (const auto works = localizer.validated(); !works) return tl::unexpected(works.error());
   if (const auto known = local_method_from(local); !known) return tl::unexpected(known.error());
+  if (!codec_from(codec)) return fail("--codec: '{}' is unknown; use draco, voxel or octree", codec);
   if (features == "learned")
     return fail("--features: learned needs a trained model, and this version has none; use --features fpfh");
   if (features != "fpfh") return fail("--features: '{}' is unknown; use fpfh", features);

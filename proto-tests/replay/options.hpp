@@ -24,6 +24,7 @@ struct ReplayOptions {
   bool submap = true;                ///< requests carry what the device saw shortly before
   double clock_ahead_ms = 0;         ///< of the devices: sent so much earlier than stamped; not in lockstep
   int threads = 1;                   ///< of the server, per request
+  std::string codec = "draco";       ///< of the clouds that devices send
   double searching_interval_ms = 0;  ///< lower bound while nothing is verified; 0: a quarter of interval_ms
   std::filesystem::path programs;    ///< folder of liloc-server and liloc-client; used without lockstep
 

@@ -56,6 +56,8 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--sampling", options->sampling, "Share of feature points that RANSAC uses")
       ->capture_default_str();
   command->add_option("--device", options->devices, "Replay this device alone; may be repeated");
+  command->add_option("--codec", options->codec, "How clouds travel: draco, voxel or octree")
+      ->capture_default_str();
   command->add_flag("--cold", options->cold, "Answer each request on its own: no prior, no history");
   command
       ->add_option(

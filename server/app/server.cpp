@@ -161,6 +161,7 @@ wire::ServerStatus Server::status() const {
   status.answered = counters.answered;
   status.verified = counters.verified;
   status.refused = counters.refused;
+  status.codecs.assign(kCloudCodecs.begin(), kCloudCodecs.end());
   return status;
 }
 

@@ -83,11 +83,13 @@ TEST(CApiFields, AProgramOfTheFirstReleaseGetsTheDefaultsOfWhatCameLater) {
   o.request_bytes = 77;  // beyond what such a program passes
   o.searching_interval_ms = 77;
   o.lost_sd_m = 77;
+  o.codec = LILOC_CODEC_OCTREE;
   const auto options = options_from(&o, kThen);
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->request_bytes, Options{}.request_bytes);
   EXPECT_EQ(options->searching_interval_ms, Options{}.searching_interval_ms);
   EXPECT_EQ(options->lost_sd_m, Options{}.lost_sd_m);
+  EXPECT_EQ(options->codec, Codec::draco);
   EXPECT_FALSE(options_from(&o, kThen - 1));
 
   liloc_pose_update u{};
@@ -128,11 +130,13 @@ TEST(CApiFields, Options) {
   o.searching_interval_ms = 19;
   o.lost_sd_m = 0.2;
   o.lost_sd_deg = 21;
+  o.codec = LILOC_CODEC_VOXEL;
   const auto options = options_from(&o, sizeof o);
   ASSERT_TRUE(options) << options.error().message;
   const auto& [id, camera, domain, interface, peer_list, min_range, max_range, voxel, interval, timeout, local,
                T_imu, still, cold, seed, queue, trace, T_base, submap, share, bytes, searching, lost_m,
-               lost_deg] = *options;
+               lost_deg, codec] = *options;
+  EXPECT_EQ(codec, Codec::voxel);
   EXPECT_EQ(id + interface + trace, "roboteth9trace");
   EXPECT_EQ(camera.width + camera.height, 3);
   EXPECT_EQ(camera.fx + camera.fy + camera.cx + camera.cy + camera.depth_scale_m, 25);

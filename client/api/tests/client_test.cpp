@@ -10,6 +10,7 @@
 #include "client/api/tests/by_heart_server.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/testing/walk.hpp"
+#include "common/wire/status.hpp"
 
 namespace liloc {
 namespace {
@@ -45,6 +46,7 @@ class FakeServer {
       reply.server_sent_ns = ceiling_ns(std::chrono::steady_clock::now());
       last_ceiling_stamp_ns = arrival.request.ceiling_stamp_ns;
       last_stamp_ns = arrival.request.stamp_ns;
+      last_codec = arrival.request.lpc.codec;
       ++answered;
     });
     EXPECT_TRUE(started) << (started ? "" : started.error().message);
@@ -57,6 +59,7 @@ class FakeServer {
   }
 
   std::atomic<int> answered = 0;
+  std::atomic<CloudCodec> last_codec{};
   std::atomic<StampNs> last_stamp_ns = 0, last_ceiling_stamp_ns = 0;
 
  private:
@@ -121,13 +124,12 @@ TEST(Client, TracksCoastsAndComesBackWithTheServer) {
   ASSERT_TRUE(made) << made.error();
   Client& client = *made.value();
   Feeder feeder(client);
-  ASSERT_TRUE(
-      feeder.until([](const auto& pose) { return pose.state == State::tracking && pose.T_map_sensor; }));
+  ASSERT_TRUE(feeder.until([](const auto& pose) {
+    return pose.state == State::tracking && pose.T_map_sensor && pose.server_connected;
+  }));
   const auto pose = client.newest();
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(pose.T_map_sensor->translation_m[i], pose.T_odom_sensor.translation_m[i] + i + 1, 1e-9);
-  EXPECT_TRUE(pose.server_connected);
-
   server.reset();
   ASSERT_TRUE(feeder.until([](const auto& p) { return p.state == State::coasting; }));
   EXPECT_TRUE(client.newest().T_map_sensor);  // goes on by itself
@@ -163,6 +165,26 @@ TEST(Client, AStandbyTakesOver) {
   }));
   EXPECT_FALSE(lost);
   EXPECT_TRUE(client.newest().server_connected);
+}
+
+TEST(Client, CloudsTravelAsWhatTheServerReads) {
+  FakeServer server;
+  const auto participant = wire::Participant::create({.domain = kDomain, .role = wire::Role::server});
+  ASSERT_TRUE(participant) << participant.error().message;
+  const auto teller = wire::StatusPublisher::create(*participant);
+  ASSERT_TRUE(teller) << teller.error().message;
+  auto made = Client::create(options());
+  ASSERT_TRUE(made) << made.error();
+  Feeder feeder(*made.value());
+  EXPECT_TRUE(feeder.until([&](const auto&) { return server.last_codec == CloudCodec::draco; }));
+  wire::ServerStatus status;
+  status.server_id = "edge1";
+  status.codecs = {static_cast<CloudCodec>(77), CloudCodec::octree, CloudCodec::voxel};
+  ASSERT_TRUE(teller->publish(status));
+  EXPECT_TRUE(feeder.until([&](const auto&) { return server.last_codec == CloudCodec::voxel; }));
+  status.codecs = {CloudCodec::draco};  // updated
+  ASSERT_TRUE(teller->publish(status));
+  EXPECT_TRUE(feeder.until([&](const auto&) { return server.last_codec == CloudCodec::draco; }));
 }
 
 /// At the pace of life, by a clock that runs ahead of the ceiling's.

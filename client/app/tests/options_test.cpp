@@ -61,6 +61,15 @@ TEST(ClientCommandLine, RequestsHaveABoundInTimeAndInBytes) {
   EXPECT_FALSE(parse({"--request-bytes", "100"}).options);
 }
 
+TEST(ClientCommandLine, CloudsTravelAsDracoUnlessToldOtherwise) {
+  EXPECT_EQ(parse({}).options->client.codec, client::Codec::draco);
+  EXPECT_EQ(parse({"--codec", "voxel"}).options->client.codec, client::Codec::voxel);
+  EXPECT_EQ(parse({"--codec", "octree"}).options->client.codec, client::Codec::octree);
+  const auto wrong = parse({"--codec", "zip"});
+  ASSERT_FALSE(wrong.options);
+  EXPECT_NE(wrong.options.error().message.find("--codec"), std::string::npos) << wrong.options.error().message;
+}
+
 TEST(ClientCommandLine, APointsTopicHasAVirtualCamera) {
   const auto parsed = parse({"--points-topic", "/points"});
   ASSERT_TRUE(parsed.options) << parsed.options.error().message;

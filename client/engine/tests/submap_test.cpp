@@ -58,16 +58,16 @@ TEST(OutsideView, IsThinnedEvenly) {
 TEST(EncodeWithin, TakesAsManyPointsAsFit) {
   const Cloud cloud = *depth_to_cloud(frame_at(scene::furnished_room(1), 0), scene::small_camera());
   const auto thinned = [&](std::size_t most) { return voxel_downsample(cloud, 0.05, most); };
-  const auto whole = encode_within(60'000, 4000, 0.05, thinned);
+  const auto whole = encode_within(60'000, 4000, {}, thinned);
   ASSERT_TRUE(whole);
   for (const std::size_t budget : {200UL, 1000UL, 2000UL, 3000UL}) {
     ASSERT_LT(budget, whole->bytes.size());
-    const auto within = encode_within(budget, 4000, 0.05, thinned);
+    const auto within = encode_within(budget, 4000, {}, thinned);
     ASSERT_TRUE(within) << within.error().message;
     EXPECT_LE(within->bytes.size(), budget);
     EXPECT_GT(within->bytes.size(), budget / 3) << "of " << budget;  // blocks give way as a whole
   }
-  EXPECT_FALSE(encode_within(10, 4000, 0.05, thinned));
+  EXPECT_FALSE(encode_within(10, 4000, {}, thinned));
 }
 
 /// Distance from each point to the nearest of the others, root mean square.
@@ -91,13 +91,17 @@ TEST(EncodeWithin, FiveKeyframesTake15KilobytesAtOneAndAHalfMillimetres) {
         keyframes.points.push_back(walk(time_of(i)).cast<float>() * p);
     }
     const auto thinned = [&](std::size_t most) { return voxel_downsample(keyframes, 0.05, most); };
-    const auto code = encode_within(15'000, kMaxCodecPoints, 0.05, thinned);
-    ASSERT_TRUE(code) << code.error().message;
-    EXPECT_LE(code->bytes.size(), 15'000U);
-    const auto decoded = decode(*code);
-    ASSERT_TRUE(decoded);
-    EXPECT_GT(decoded->size(), 8000U) << "seed " << seed;
-    EXPECT_LT(rms_to(*decoded, thinned(decoded->size())), 0.0015) << "seed " << seed;
+    for (const auto& [codec, fewest] : {std::pair{CloudCodec::draco, 7000U}, {CloudCodec::voxel, 8000U}}) {
+      const auto code = encode_within(15'000, kMaxCodecPoints, {.codec = codec}, thinned);
+      ASSERT_TRUE(code) << code.error().message;
+      EXPECT_EQ(code->codec, codec);
+      EXPECT_LE(code->bytes.size(), 15'000U);
+      const auto decoded = decode(*code);
+      ASSERT_TRUE(decoded);
+      EXPECT_GT(decoded->size(), fewest) << name_of(codec) << ", seed " << seed;
+      EXPECT_NEAR(rms_to(*decoded, thinned(decoded->size())), 0.0015, 0.00003)
+          << name_of(codec) << ", seed " << seed;
+    }
   }
 }
 

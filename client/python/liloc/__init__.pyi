@@ -189,6 +189,7 @@ class Client:
         searching_interval_ms: int = 0,
         lost_sd_m: float = 0.3,
         lost_sd_deg: float = 10,
+        codec: Literal["draco", "voxel", "octree"] = "draco",
         on_pose: Optional[Callable[[PoseUpdate], object]] = None,
         on_reply: Optional[Callable[[Reply], object]] = None,
     ) -> None:

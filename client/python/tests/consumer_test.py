@@ -159,7 +159,7 @@ class Misuse(unittest.TestCase):
                               ({"local": "inertial"}, "T_imu_sensor"), ({"interval_ms": 1}, "interval_ms"),
                               ({"request_bytes": 1}, "request_bytes"),
                               ({"searching_interval_ms": -1}, "searching_interval_ms"),
-                              ({"lost_sd_m": 0}, "lost_sd_m"),
+                              ({"lost_sd_m": 0}, "lost_sd_m"), ({"codec": "zip"}, "codec is 'zip'"),
                               ({"name": "no blanks"}, "options.id")):
             with self.assertRaisesRegex(ValueError, text):
                 client(**options)

@@ -133,11 +133,13 @@ TEST(ConvertStatus, RoundTripAndHostileState) {
   ServerStatus status;
   status.server_id = "edge1";
   status.lidars = {{"ceiling0", LidarState::slow, 2.5, 7, 3, std::string(300, 'e')}};
+  status.codecs = {CloudCodec::voxel, CloudCodec::draco, static_cast<CloudCodec>(77)};
   auto sample = to_wire(status);
   const auto back = from_wire(sample.message);
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->lidars[0].state, LidarState::slow);
   EXPECT_EQ(back->lidars[0].last_error.size(), 200U);
+  EXPECT_EQ(back->codecs, status.codecs);
   sample.lidars[0].state = 9;
   expect_refused(sample.message, "state");
   sample.lidars[0].state = 1;

@@ -87,6 +87,7 @@ TEST(Server, AnswersAClientAndTellsItsStatus) {
   }));
   EXPECT_EQ(status->server_id, "edge1");
   EXPECT_EQ(status->clients, 1U);
+  EXPECT_EQ(status->codecs, std::vector(kCloudCodecs.begin(), kCloudCodecs.end()));
   ASSERT_EQ(status->lidars.size(), 1U);
   EXPECT_EQ(status->lidars[0].id, "ceiling0");
   EXPECT_EQ(status->lidars[0].frames, 1U);

@@ -6,7 +6,7 @@
 
 #include "client/engine/engine.hpp"
 #include "client/session/clock_estimator.hpp"
-#include "client/session/line_limit.hpp"
+#include "common/base/line_limit.hpp"
 
 namespace liloc {
 

@@ -3,6 +3,8 @@
 #include <memory>
 #include <mutex>
 
+#include "common/base/text.hpp"
+
 namespace liloc::log {
 namespace {
 
@@ -30,7 +32,7 @@ void write(Level level, std::string_view line) {
     const std::scoped_lock lock(mutex);
     sink = current;
   }
-  if (sink) (*sink)(level, line);
+  if (sink) (*sink)(level, without_controls(line));
 }
 
 }  // namespace liloc::log

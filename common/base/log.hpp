@@ -18,6 +18,7 @@ using Sink = std::function<void(Level, std::string_view)>;
 
 /// Replaces the sink (default: nothing is printed). Safe from any thread; the sink must be too.
 void set_sink(Sink sink);
+/// A line reaches the sink without control characters, whoever wrote what stands in it.
 void write(Level level, std::string_view line);
 
 template <class... Args>

@@ -15,13 +15,19 @@ struct Camera {
   double fx = 0, fy = 0, cx = 0, cy = 0;
   double depth_scale_m = 0.001;  ///< metres per unit of a depth image
 
-  /// Checks sizes 1..8192, focal lengths and scale positive and finite, centre within one image size of the
-  /// image.
+  /// Checks sizes 1..8192, focal lengths by the angles of view (1..170 deg), centre within one image size of
+  /// the image, scale 1e-5..0.1 m.
   [[nodiscard]] Result<Camera> validated(std::string_view what) const;
 };
 
 /// The same view at 1/`factor` of the resolution (rounded up).
 [[nodiscard]] Camera shrunk(const Camera& camera, int factor);
+
+/// Whether a depth value is a measurement: 0 is none, and drivers that mark a missing return by the largest
+/// value do so whatever the scale, so 65535 is none either.
+[[nodiscard]] constexpr bool is_return(std::uint16_t units) {
+  return units != 0 && units != 65535;
+}
 
 /// 16-bit z-depth, row-major; 0 = no return.
 struct DepthImage {

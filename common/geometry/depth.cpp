@@ -7,18 +7,21 @@ namespace liloc {
 namespace {
 
 constexpr double kNearest_m = 1e-3;  // of what a camera may see
-constexpr double kNoReturn = 65535;  // some cameras mark a missing return by it
 
 /// True when no neighbour along `step` supports the pixel; `lo`/`hi` say whether that neighbour exists.
 bool unsupported(const std::uint16_t* pixel, std::ptrdiff_t step, bool lo, bool hi, int tolerance) {
   const int depth = *pixel;
   const auto near = [&](bool exists, std::ptrdiff_t offset) {
-    return exists && pixel[offset] != 0 && std::abs(static_cast<int>(pixel[offset]) - depth) <= tolerance;
+    return exists && is_return(pixel[offset]) && std::abs(static_cast<int>(pixel[offset]) - depth) <= tolerance;
   };
   return !near(lo, -step) && !near(hi, step);
 }
 
 }  // namespace
+
+void mark_missing(DepthImage& image) {
+  for (std::uint16_t& units : image.units) units = is_return(units) ? units : std::uint16_t{0};
+}
 
 Result<Cloud> depth_to_cloud(const DepthImage& image, const Camera& camera, const DepthOptions& options) {
   if (image.width != camera.width || image.height != camera.height)
@@ -41,7 +44,7 @@ Result<Cloud> depth_to_cloud(const DepthImage& image, const Camera& camera, cons
     const std::uint16_t* row = image.units.data() + v * width;
     for (std::size_t u = 0; u < width; ++u) {
       const float z = static_cast<float>(row[u]) * scale;
-      if (row[u] == 0 || z < nearest || z > farthest) continue;
+      if (!is_return(row[u]) || z < nearest || z > farthest) continue;
       if (options.flying_pixel_share > 0) {
         const int tolerance = static_cast<int>(row[u] * options.flying_pixel_share);
         if (unsupported(row + u, 1, u > 0, u + 1 < width, tolerance) &&
@@ -69,7 +72,7 @@ DepthImage cloud_to_depth(const Cloud& cloud_sensor, const Camera& camera, Stamp
     const auto pixel = pixel_of(camera, p);
     if (!pixel) continue;
     const double units = static_cast<double>(p.z()) / camera.depth_scale_m + 0.5;
-    if (units < 1 || units >= kNoReturn) continue;
+    if (units < 1 || units >= 65535) continue;
     std::uint16_t& held =
         image.units[static_cast<std::size_t>(pixel->y()) * width + static_cast<std::size_t>(pixel->x())];
     if (held == 0 || units < held) held = static_cast<std::uint16_t>(units);

@@ -14,6 +14,9 @@ struct DepthOptions {
                                      ///< row and both in a column hangs in the air and is dropped; 0 keeps all
 };
 
+/// Makes 0 of every value that is no return (see `is_return`): what readers of images do first.
+void mark_missing(DepthImage& image);
+
 /// Depth image to points in the sensor frame (paper, section 4.2), one per valid pixel, row by row.
 /// Errors: the image's size differs from the camera's, or its data from its size.
 [[nodiscard]] Result<Cloud> depth_to_cloud(const DepthImage& image, const Camera& camera,

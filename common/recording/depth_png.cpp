@@ -6,6 +6,7 @@
 #include <csetjmp>
 #include <cstring>
 
+#include "common/geometry/depth.hpp"
 #include "common/recording/files.hpp"
 #include "common/recording/writer.hpp"
 
@@ -125,6 +126,7 @@ Result<DepthImage> read_depth(const DepthFile& file, const Camera& camera) {
   auto rows = rows_of(image.units.data(), width, height);
   if (!read_rows(reader, rows.data()))
     return fail("{}: is no sound PNG ({}); record it anew", name, reader.stream.reason);
+  mark_missing(image);
   return image;
 }
 

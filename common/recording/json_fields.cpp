@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <set>
+#include <vector>
 
 #include "common/recording/files.hpp"
 
@@ -33,6 +36,24 @@ Result<Eigen::Matrix<double, N, 1>> numbers(const nlohmann::json& object, const 
   }
   return values;
 }
+
+/// A key that stands twice in one object: which of the two was meant nobody can tell.
+class DoubledKeys {
+ public:
+  bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+    using Event = nlohmann::json::parse_event_t;
+    if (event == Event::object_start) open_.emplace_back();
+    if (event == Event::object_end) open_.pop_back();
+    if (event == Event::key && !open_.back().insert(parsed.get<std::string>()).second && found_.empty())
+      found_ = shown(parsed);
+    return true;
+  }
+  [[nodiscard]] const std::string& found() const { return found_; }  ///< empty: none
+
+ private:
+  std::vector<std::set<std::string>> open_;  // keys of the objects that are being read
+  std::string found_;
+};
 
 }  // namespace
 
@@ -85,7 +106,10 @@ Result<nlohmann::json> read_json_object(const std::string& file) {
   const auto bytes = read_file(file, kLargestJsonBytes);
   if (!bytes) return tl::unexpected(bytes.error());
   try {
-    auto object = nlohmann::json::parse(*bytes);
+    DoubledKeys doubled;
+    auto object = nlohmann::json::parse(*bytes, std::ref(doubled));
+    if (!doubled.found().empty())
+      return fail("{}: {} stands twice in one object; remove one", file, doubled.found());
     if (!object.is_object())
       return fail("{}: holds {}; it must be one JSON object {{...}}", file, object.type_name());
     return object;

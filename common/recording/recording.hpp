@@ -58,7 +58,7 @@ struct Recording {
 [[nodiscard]] Result<std::vector<StampedPose>> read_ground_truth(const DeviceRecording& device);
 [[nodiscard]] Result<std::vector<StampedPose>> read_tum(const std::filesystem::path& file);
 
-/// 16-bit greyscale PNG of the camera's size; the stamp is the caller's.
+/// 16-bit greyscale PNG of the camera's size; the stamp is the caller's, every missing return is 0.
 [[nodiscard]] Result<DepthImage> read_depth(const DepthFile& file, const Camera& camera);
 
 }  // namespace liloc

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/result.hpp"
+#include "common/base/text.hpp"
 #include "common/geometry/pose.hpp"
 
 namespace liloc::wire {
@@ -20,9 +21,10 @@ void copy_text(char (&to)[N], std::string_view from) {
   std::memset(to + length, 0, N - length);
 }
 
+/// Without control characters: what comes from a stranger ends up in logs and on terminals.
 template <std::size_t N>
 std::string text_of(const char (&from)[N]) {
-  return std::string(from, strnlen(from, N));
+  return without_controls(std::string_view(from, strnlen(from, N)));
 }
 
 /// Lends a vector's memory to an outgoing sample; DDS reads it and never frees it.

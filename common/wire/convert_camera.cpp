@@ -1,3 +1,4 @@
+#include "common/geometry/depth.hpp"
 #include "common/wire/convert_header.hpp"
 #include "common/wire/convert_sensors.hpp"
 
@@ -19,7 +20,7 @@ Status check_image(const sensor_msgs_msg_dds__Image_& m, std::uint64_t pixel_byt
 
 std::uint16_t units_of(float metres, double depth_scale_m) {
   const double units = static_cast<double>(metres) / depth_scale_m;
-  return std::isfinite(units) && units > 0 && units < 65535.5 ? static_cast<std::uint16_t>(std::lround(units))
+  return std::isfinite(units) && units > 0 && units < 65534.5 ? static_cast<std::uint16_t>(std::lround(units))
                                                               : 0;
 }
 
@@ -47,6 +48,7 @@ Result<DepthImage> from_wire(const sensor_msgs_msg_dds__Image_& m, double depth_
       units[u] = metres ? units_of(load<float>(row + 4 * std::size_t{u}, big_endian), depth_scale_m)
                         : load<std::uint16_t>(row + 2 * std::size_t{u}, big_endian);
   }
+  mark_missing(image);
   return image;
 }
 

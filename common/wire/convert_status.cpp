@@ -18,6 +18,12 @@ std::string_view name_of(LidarState state) {
       return "silent";
     case LidarState::malformed:
       return "malformed";
+    case LidarState::blind:
+      return "blind";
+    case LidarState::implausible:
+      return "implausible";
+    case LidarState::clock_off:
+      return "clock_off";
   }
   return "unknown";
 }
@@ -39,6 +45,11 @@ StatusSample to_wire(const ServerStatus& status) {
     row.frames = lidar.frames;
     row.malformed = lidar.malformed;
     copy_text(row.last_error, lidar.last_error);
+    row.returns = lidar.returns;
+    row.range_m = lidar.range_m;
+    row.usual_range_m = lidar.usual_range_m;
+    row.clock_offset_s = lidar.clock_offset_s;
+    row.clock_corrected = lidar.clock_corrected;
   }
   lend(m.lidars, sample.lidars);
   m.clients = status.clients;
@@ -50,6 +61,29 @@ StatusSample to_wire(const ServerStatus& status) {
   lend(m.codecs, sample.codecs);
   return sample;
 }
+
+namespace {
+
+constexpr double kMostOffset_s = 1e11;  // stamps are 64 bits of nanoseconds: 292 years
+
+Result<LidarHealth> from_wire(const liloc_msg_LidarHealth& row, const std::string& where) {
+  if (row.state > static_cast<std::uint8_t>(LidarState::clock_off))
+    return fail("{}.state is {}, must be 0..7", where, row.state);
+  for (const Status& valid :
+       {finite(row.measured_hz, where + ".measured_hz", 0, 1e6), finite(row.returns, where + ".returns", 0, 1),
+        finite(row.range_m, where + ".range_m", 0, 1e6),
+        finite(row.usual_range_m, where + ".usual_range_m", 0, 1e6),
+        finite(row.clock_offset_s, where + ".clock_offset_s", -kMostOffset_s, kMostOffset_s)})
+    if (!valid) return tl::unexpected(valid.error());
+  return LidarHealth{text_of(row.id),    static_cast<LidarState>(row.state),
+                     row.measured_hz,    row.frames,
+                     row.malformed,      text_of(row.last_error),
+                     row.returns,        row.range_m,
+                     row.usual_range_m,  row.clock_offset_s,
+                     row.clock_corrected};
+}
+
+}  // namespace
 
 Result<ServerStatus> from_wire(const liloc_msg_ServerStatus& message) {
   if (message.protocol_version != kProtocolVersion)
@@ -63,13 +97,9 @@ Result<ServerStatus> from_wire(const liloc_msg_ServerStatus& message) {
   status.uptime_s = message.uptime_s;
   if (auto valid = finite(message.uptime_s, "uptime_s", 0, 1e12); !valid) return tl::unexpected(valid.error());
   for (std::uint32_t i = 0; i < message.lidars._length; ++i) {
-    const auto& row = message.lidars._buffer[i];
-    if (row.state > static_cast<std::uint8_t>(LidarState::malformed))
-      return fail("lidars[{}].state is {}, must be 0..4", i, row.state);
-    if (auto valid = finite(row.measured_hz, "measured_hz", 0, 1e6); !valid)
-      return tl::unexpected(valid.error());
-    status.lidars.push_back({text_of(row.id), static_cast<LidarState>(row.state), row.measured_hz, row.frames,
-                             row.malformed, text_of(row.last_error)});
+    auto lidar = from_wire(message.lidars._buffer[i], fmt::format("lidars[{}]", i));
+    if (!lidar) return tl::unexpected(lidar.error());
+    status.lidars.push_back(std::move(*lidar));
   }
   status.clients = message.clients;
   status.queued = message.queued;

@@ -29,7 +29,8 @@ struct StampedOdometry {
 /// A topic as ROS 2 users name it ("/camera/depth/image_raw", with the slash or without) on the wire.
 [[nodiscard]] Result<std::string> dds_topic(const std::string& ros_name);
 
-/// 16UC1 comes through in the sensor's own units, 32FC1 (metres) is turned into units of `depth_scale_m`.
+/// 16UC1 comes through in the sensor's own units, 32FC1 (metres) is turned into units of `depth_scale_m`; every
+/// missing return is 0.
 [[nodiscard]] Status subscribe_depth(Dispatcher& dispatcher, const std::string& id, double depth_scale_m,
                                      std::function<void(Result<DepthImage>)> handler);
 /// The camera's depth_scale_m is not part of the message and stays at its default.

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/base/ids.hpp"
+#include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
 #include "common/wire/convert.hpp"
 #include "common/wire/convert_spot.hpp"
@@ -54,19 +55,24 @@ struct ServerLink::Impl {
   std::atomic<bool> closed = false;
   std::map<dds_instance_handle_t, std::string> bound;  // publication -> client id; of the dispatcher's thread
   std::set<dds_instance_handle_t> strangers;           // matched, but bound to nobody
+  LineLimit stranger_lines;                            // of the dispatcher's thread, as the next
+  SourceLimit unserved_lines;
 };
 
 void ServerLink::Impl::admit(dds_instance_handle_t publication) {
   const auto id = client_of(reader, publication);
   if (!id) {
     strangers.insert(publication);
-    log::warning("a writer of {} is not in one partition robots/<id>; it is not served", kRequestTopic);
+    if (const auto held = stranger_lines.pass(std::chrono::steady_clock::now()))
+      log::warning("a writer of {} is not in one partition robots/<id>; it is not served{}", kRequestTopic,
+                   held_back(*held));
     return;
   }
   const auto joined = writers.open(*id);
   if (!joined) {
     strangers.insert(publication);
-    log::warning("client {} is not served: {}", *id, joined.error().message);
+    if (const auto held = unserved_lines.pass(*id, std::chrono::steady_clock::now()))
+      log::warning("client {} is not served: {}{}", *id, joined.error().message, held_back(*held));
     return;
   }
   bound[publication] = *id;

@@ -13,7 +13,18 @@
 
 namespace liloc::wire {
 
-enum class LidarState : std::uint8_t { waiting = 0, ok = 1, slow = 2, silent = 3, malformed = 4 };
+/// blind: frames without returns; implausible: ranges that no ceiling LiDAR sees, or three times what it used
+/// to see; clock_off: its clock is not the site's and cannot be corrected (yet), so its frames are left out.
+enum class LidarState : std::uint8_t {
+  waiting = 0,
+  ok = 1,
+  slow = 2,
+  silent = 3,
+  malformed = 4,
+  blind = 5,
+  implausible = 6,
+  clock_off = 7
+};
 [[nodiscard]] std::string_view name_of(LidarState state);
 
 struct LidarHealth {
@@ -21,7 +32,12 @@ struct LidarHealth {
   LidarState state = LidarState::waiting;  ///< waiting: nothing has come yet
   double measured_hz = 0;
   std::uint64_t frames = 0, malformed = 0;
-  std::string last_error;  ///< at most 200 characters
+  std::string last_error = {};   ///< at most 200 characters
+  double returns = 0;            ///< share of the pixels that measured something, 0..1
+  double range_m = 0;            ///< median depth of these; 0: none
+  double usual_range_m = 0;      ///< what that used to be; 0: not known yet
+  double clock_offset_s = 0;     ///< its clock ahead of the site's
+  bool clock_corrected = false;  ///< its stamps are set right by that
 };
 
 struct ServerStatus {

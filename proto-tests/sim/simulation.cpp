@@ -137,6 +137,14 @@ std::optional<SimEvent> Simulation::next() {
   }
 }
 
+std::size_t Simulation::skip_images_before(StampNs at_ns) {
+  const double before_s = to_seconds(at_ns - impl_->start_ns);
+  std::size_t skipped = 0;
+  for (Stream& stream : impl_->streams)
+    for (; stream.source != Source::imu && stream.next_s() < before_s; ++stream.count) ++skipped;
+  return skipped;
+}
+
 Result<Cloud> Simulation::reference_scan() const {
   return scan_reference(impl_->world.layout(), impl_->options.threads);
 }

@@ -49,6 +49,10 @@ class Simulation {
   /// The next event by rising time, rendered now; empty after `seconds`. One thread at a time.
   [[nodiscard]] std::optional<SimEvent> next();
 
+  /// Leaves out the images that would come before a moment, unseen and unrendered, for whoever has fallen
+  /// behind; IMU samples cost nothing and stay. How many.
+  std::size_t skip_images_before(StampNs at_ns);
+
   /// A scan of the empty site before anything was moved, in the map frame, about a point every 4 cm.
   [[nodiscard]] Result<Cloud> reference_scan() const;
 

@@ -8,6 +8,8 @@
 namespace liloc::toolbox {
 
 using Clock = std::chrono::steady_clock;
+// Of two frames at 6 Hz: what comes later than that is no live stream.
+constexpr auto kMostBehind = std::chrono::milliseconds(300);
 
 Result<std::unique_ptr<LiveSite>> LiveSite::create(const sim::SimOptions& options, int domain) {
   auto simulation = sim::Simulation::create(options);
@@ -50,8 +52,9 @@ void LiveSite::run(const std::stop_token& stop) {
     if (!event) break;
     const auto due = start + std::chrono::nanoseconds(event->at_ns - simulation_.start_ns());
     std::this_thread::sleep_until(due);
-    const double late_ms = std::chrono::duration<double, std::milli>(Clock::now() - due).count();
-    behind_ms_ = std::max(late_ms, 0.99 * behind_ms_);
+    const auto late = Clock::now() - due;
+    if (late > kMostBehind)
+      dropped_ += simulation_.skip_images_before(event->at_ns + std::chrono::nanoseconds(late).count());
     if (auto status = send(*event); !status) {
       const std::scoped_lock lock(mutex_);
       trouble_ = status;

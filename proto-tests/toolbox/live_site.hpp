@@ -36,8 +36,8 @@ class LiveSite {
   [[nodiscard]] std::optional<Pose> truth(std::size_t device, StampNs stamp_ns) const;
   /// Stamp of a device's first frame; 0 before there is one. Any thread.
   [[nodiscard]] StampNs first_frame_ns(std::size_t device) const;
-  /// How far the streams have fallen behind real time at worst, over the last second or so. Any thread.
-  [[nodiscard]] double behind_ms() const { return behind_ms_; }
+  /// Images that were left out because rendering fell behind real time. Any thread.
+  [[nodiscard]] std::size_t dropped() const { return dropped_; }
 
  private:
   LiveSite(wire::Participant participant, sim::Simulation simulation, replay::Streams streams);
@@ -56,7 +56,7 @@ class LiveSite {
   std::vector<StampNs> first_frames_ns_;         ///< per device
   Status trouble_;
   std::atomic<bool> over_{false};
-  std::atomic<double> behind_ms_{0};
+  std::atomic<std::size_t> dropped_{0};
   std::jthread worker_;  // last member: stops before the rest goes away
 };
 

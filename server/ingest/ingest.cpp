@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
-#include "common/base/quantile.hpp"
-#include "common/base/stamp_clock.hpp"
 #include "common/wire/sensors.hpp"
 #include "server/ingest/lidar_monitor.hpp"
 
@@ -24,15 +23,51 @@ bool focal_differs(const Camera& a, const Camera& b) {
   return std::abs(a.fx / b.fx - 1) > 0.01 || std::abs(a.fy / b.fy - 1) > 0.01;
 }
 
+StampNs wall_clock_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// A line for the log; `doctor` has the remedies.
+void report(const wire::LidarHealth& health, double rate_hz) {
+  switch (health.state) {
+    case wire::LidarState::ok:
+      return log::info("{}: ok at {:.1f} Hz", health.id, health.measured_hz);
+    case wire::LidarState::slow:
+      return log::warning("{}: slow, {:.1f} Hz of {:.1f}", health.id, health.measured_hz, rate_hz);
+    case wire::LidarState::silent:
+      return log::warning(
+          "{}: silent; is it running, and does it send rt/{}/depth/image_rect_raw in this domain?", health.id,
+          health.id);
+    case wire::LidarState::malformed:
+      return log::warning("{}: malformed: {}", health.id, health.last_error);
+    case wire::LidarState::blind:
+      return log::warning("{}: blind: {:.1f} % of its pixels measure anything; is it covered, is its laser on?",
+                          health.id, 100 * health.returns);
+    case wire::LidarState::implausible:
+      return log::warning(
+          "{}: implausible: its median range is {:.3g} m{}; is depth_scale right, is it covered?", health.id,
+          health.range_m,
+          health.usual_range_m > 0 ? fmt::format(", it used to be {:.3g} m", health.usual_range_m) : "");
+    case wire::LidarState::clock_off:
+      return log::warning(
+          "{}: its clock is {:.2f} s {} the site's: its frames are left out until that holds steady", health.id,
+          std::abs(health.clock_offset_s), health.clock_offset_s > 0 ? "ahead of" : "behind");
+    case wire::LidarState::waiting:
+      return;
+  }
+}
+
 }  // namespace
 
 struct Ingest::Lidar {
   GlobalLidar info;
   LidarMonitor monitor;
   wire::LidarState reported = wire::LidarState::waiting;
-  bool camera_reported = false;
-  StampNs newest_ns = 0;
-  StampClock clock{};
+  LineLimit lines{}, clock_lines{};
+  bool camera_reported = false, correction_reported = false;
+  StampNs newest_ns = 0;  ///< by the site's clock
 };
 
 Ingest::Ingest(FrameSink sink) : sink_(std::move(sink)) {}
@@ -44,6 +79,7 @@ Result<std::unique_ptr<Ingest>> Ingest::create(wire::Dispatcher& dispatcher, con
   for (const auto& lidar : site.global_lidars)
     ingest->lidars_.push_back(
         std::make_unique<Lidar>(Lidar{lidar, LidarMonitor(lidar.id, lidar.rate_hz, Clock::now())}));
+  ingest->clocks_ = SiteClocks(ingest->lidars_.size());
   for (std::size_t i = 0; i < ingest->lidars_.size(); ++i)
     if (auto subscribed = ingest->subscribe(dispatcher, i); !subscribed)
       return tl::unexpected(subscribed.error());
@@ -57,12 +93,15 @@ Status Ingest::subscribe(wire::Dispatcher& dispatcher, std::size_t index) {
     if (!image) return drop(index, image.error().message);
     if (auto size = same_size(lidar, "depth image", image->width, image->height); !size)
       return drop(index, size.error().message);
-    const StampNs stamp_ns = image->stamp_ns;
-    take(index, stamp_ns, sink_.add_depth(index, std::move(*image)));
+    take(index, image->stamp_ns, content_of(*image, lidar.camera), [&](StampNs stamp_ns) {
+      image->stamp_ns = stamp_ns;
+      return sink_.add_depth(index, std::move(*image));
+    });
   };
-  const auto on_points = [this, index](const Result<wire::StampedCloud>& cloud) {
+  const auto on_points = [this, index, &lidar](const Result<wire::StampedCloud>& cloud) {
     if (!cloud) return drop(index, cloud.error().message);
-    take(index, cloud->stamp_ns, sink_.add_points(index, cloud->stamp_ns, cloud->cloud_sensor));
+    take(index, cloud->stamp_ns, content_of(cloud->cloud_sensor, lidar.camera),
+         [&](StampNs stamp_ns) { return sink_.add_points(index, stamp_ns, cloud->cloud_sensor); });
   };
   if (auto ok = wire::subscribe_depth(dispatcher, lidar.id, lidar.camera.depth_scale_m, on_depth); !ok)
     return ok;
@@ -71,14 +110,21 @@ Status Ingest::subscribe(wire::Dispatcher& dispatcher, std::size_t index) {
                                      [this, index](const Result<Camera>& info) { check_camera(index, info); });
 }
 
-void Ingest::take(std::size_t index, StampNs stamp_ns, const Status& taken) {
-  if (!taken) return drop(index, taken.error().message);
+void Ingest::take(std::size_t index, StampNs stamp_ns, const FrameContent& content,
+                  const std::function<Status(StampNs)>& add) {
+  const auto now = Clock::now();
+  std::optional<StampNs> site_stamp_ns;
   {
     const std::scoped_lock lock(mutex_);
-    lidars_[index]->monitor.on_frame(Clock::now());
-    lidars_[index]->newest_ns = stamp_ns;
-    if (lidars_[index]->clock.add(stamp_ns, Clock::now()))
-      log::warning("{}: its clock was set to {} ns", lidars_[index]->info.id, stamp_ns);
+    site_stamp_ns = clocks_.add(index, stamp_ns, now, wall_clock_ns());
+  }
+  if (site_stamp_ns)
+    if (const Status taken = add(*site_stamp_ns); !taken) return drop(index, taken.error().message);
+  {
+    const std::scoped_lock lock(mutex_);
+    lidars_[index]->monitor.on_frame(now, content);
+    if (!site_stamp_ns) return;
+    lidars_[index]->newest_ns = *site_stamp_ns;
   }
   if (sink_.on_frame) sink_.on_frame();
 }
@@ -102,33 +148,38 @@ void Ingest::check_camera(std::size_t index, const Result<Camera>& info) {
                lidar.info.id, info->fx, info->fy, lidar.info.camera.fx, lidar.info.camera.fy);
 }
 
+/// Its lock held.
+wire::LidarHealth Ingest::assess(std::size_t index, Clock::time_point now) const {
+  wire::LidarHealth health = lidars_[index]->monitor.assess(now);
+  const ClockOffset offset = clocks_.offset(index);
+  health.clock_offset_s = to_seconds(offset.ahead_ns);
+  health.clock_corrected = offset.corrected;
+  if (offset.left_out && health.state != wire::LidarState::waiting &&
+      health.state != wire::LidarState::silent && health.state != wire::LidarState::malformed)
+    health.state = wire::LidarState::clock_off;
+  return health;
+}
+
 void Ingest::report_changes() {
   const auto now = Clock::now();
-  for (auto& lidar : lidars_) {
+  for (std::size_t i = 0; i < lidars_.size(); ++i) {
+    Lidar& lidar = *lidars_[i];  // what was reported is this thread's alone
     wire::LidarHealth health;
     {
       const std::scoped_lock lock(mutex_);
-      health = lidar->monitor.assess(now);
+      health = assess(i, now);
     }
-    if (health.state == lidar->reported) continue;
-    lidar->reported = health.state;  // only this thread looks at it
-    switch (health.state) {
-      case wire::LidarState::ok:
-        log::info("{}: ok at {:.1f} Hz", health.id, health.measured_hz);
-        break;
-      case wire::LidarState::slow:
-        log::warning("{}: slow, {:.1f} Hz of {:.1f}", health.id, health.measured_hz, lidar->info.rate_hz);
-        break;
-      case wire::LidarState::silent:
-        log::warning("{}: silent; is it running, and does it send rt/{}/depth/image_rect_raw in this domain?",
-                     health.id, health.id);
-        break;
-      case wire::LidarState::malformed:
-        log::warning("{}: malformed: {}", health.id, health.last_error);
-        break;
-      case wire::LidarState::waiting:
-        break;
-    }
+    if (health.clock_corrected && !lidar.correction_reported && lidar.clock_lines.pass(now))
+      log::warning("{}: its clock is {:.2f} s {} the site's: its stamps are corrected; set it by NTP or PTP",
+                   health.id, std::abs(health.clock_offset_s),
+                   health.clock_offset_s > 0 ? "ahead of" : "behind");
+    lidar.correction_reported = health.clock_corrected;
+    if (health.state == lidar.reported) continue;
+    // Whoever sends under a LiDAR's name can make it change with every frame: what is held back shows when it
+    // stays.
+    if (!lidar.lines.pass(now)) continue;
+    lidar.reported = health.state;
+    report(health, lidar.info.rate_hz);
   }
 }
 
@@ -136,30 +187,24 @@ std::vector<wire::LidarHealth> Ingest::health() const {
   const auto now = Clock::now();
   const std::scoped_lock lock(mutex_);
   std::vector<wire::LidarHealth> health;
-  for (const auto& lidar : lidars_) health.push_back(lidar->monitor.assess(now));
+  for (std::size_t i = 0; i < lidars_.size(); ++i) health.push_back(assess(i, now));
   return health;
 }
 
 StampNs Ingest::ceiling_now(Clock::time_point at) const {
-  std::vector<StampNs> clocks;
-  {
-    const std::scoped_lock lock(mutex_);
-    for (const auto& lidar : lidars_)
-      if (const auto now = lidar->clock.now(at)) clocks.push_back(*now);
-  }
-  if (clocks.empty()) return 0;
-  return median(std::move(clocks));
+  const std::scoped_lock lock(mutex_);
+  return clocks_.now(at).value_or(0);
 }
 
 bool Ingest::seen(StampNs stamp_ns) const {
   const auto now = Clock::now();
   const std::scoped_lock lock(mutex_);
-  return std::ranges::all_of(lidars_, [&](const auto& lidar) {
-    if (lidar->newest_ns >= stamp_ns) return true;
-    const auto state = lidar->monitor.assess(now).state;
-    return state != wire::LidarState::ok &&
-           state != wire::LidarState::slow;  // nobody waits for one that is out
-  });
+  for (std::size_t i = 0; i < lidars_.size(); ++i) {
+    if (lidars_[i]->newest_ns >= stamp_ns) continue;
+    const auto state = assess(i, now).state;  // nobody waits for one that is out
+    if (state == wire::LidarState::ok || state == wire::LidarState::slow) return false;
+  }
+  return true;
 }
 
 }  // namespace liloc

@@ -14,11 +14,14 @@
 #include "common/geometry/cloud.hpp"
 #include "common/wire/dispatcher.hpp"
 #include "common/wire/status.hpp"
+#include "server/ingest/frame_content.hpp"
+#include "server/ingest/site_clocks.hpp"
 
 namespace liloc {
 
 /// Where frames go; `lidar` is the index into the site. Run on the dispatcher's thread. An error counts as a
-/// malformed frame. `on_frame`, where set, follows each frame that was taken.
+/// malformed frame. Stamps are the site's clock (`SiteClocks`); a frame whose clock cannot be set right does
+/// not come here. `on_frame`, where set, follows each frame that was taken.
 struct FrameSink {
   std::function<Status(std::size_t lidar, DepthImage)> add_depth = {};
   std::function<Status(std::size_t lidar, StampNs, const Cloud& cloud_sensor)> add_points = {};
@@ -38,8 +41,8 @@ class Ingest {
 
   /// In the order of the site. Any thread.
   [[nodiscard]] std::vector<wire::LidarHealth> health() const;
-  /// What the ceiling's clock shows: the median of the LiDARs that are heard, each by its newest stamps and the
-  /// time since they came; 0 where none is. Any thread.
+  /// What the ceiling's clock shows (`SiteClocks`), by the newest stamps and the time since they came; 0 where
+  /// no LiDAR is heard. Any thread.
   [[nodiscard]] StampNs ceiling_now(std::chrono::steady_clock::time_point at) const;
   /// Whether every LiDAR that is heard has shown the room as of `stamp_ns` or later. Any thread.
   [[nodiscard]] bool seen(StampNs stamp_ns) const;
@@ -49,14 +52,18 @@ class Ingest {
   explicit Ingest(FrameSink sink);
 
   [[nodiscard]] Status subscribe(wire::Dispatcher& dispatcher, std::size_t index);
-  void take(std::size_t index, StampNs stamp_ns, const Status& taken);
+  /// Hands a frame on, stamped by the site's clock.
+  void take(std::size_t index, StampNs stamp_ns, const FrameContent& content,
+            const std::function<Status(StampNs)>& add);
   void drop(std::size_t index, const std::string& error);
   void check_camera(std::size_t index, const Result<Camera>& info);
   void report_changes();
+  [[nodiscard]] wire::LidarHealth assess(std::size_t index, std::chrono::steady_clock::time_point now) const;
 
   const FrameSink sink_;
-  mutable std::mutex mutex_;  // guards what changes in lidars_
+  mutable std::mutex mutex_;  // guards what changes in lidars_, and clocks_
   std::vector<std::unique_ptr<Lidar>> lidars_;
+  SiteClocks clocks_{0};
 };
 
 }  // namespace liloc

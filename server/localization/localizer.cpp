@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
 #include "server/localization/device_session.hpp"
 #include "server/localization/spot_solver.hpp"
@@ -38,6 +39,7 @@ struct Localizer::Impl {
   std::map<std::string, Pose> last_learned;        ///< per client; a device that stands still teaches once
   std::set<std::string> troubled;                  ///< clients whose trouble the log has
   std::shared_ptr<const Snapshot> first_snapshot;  ///< static_noopt: the room as it was at the start
+  SourceLimit failures{}, troubles{};              ///< lines of the log
 
   std::shared_ptr<DeviceSession> session(const std::string& client_id) {
     const std::scoped_lock lock(mutex);
@@ -79,7 +81,16 @@ struct Localizer::Impl {
   void note_trouble(const std::string& client_id, const Spot& spot, SpotReply* reply) {
     reply->text += "; " + spot.trouble();
     const std::scoped_lock lock(mutex);
-    if (troubled.insert(client_id).second) log::warning("{}: {}", client_id, spot.trouble());
+    if (!troubled.insert(client_id).second) return;
+    if (const auto held = troubles.pass(client_id, std::chrono::steady_clock::now()))
+      log::warning("{}: {}{}", client_id, spot.trouble(), held_back(*held));
+  }
+
+  /// Who sends what cannot be handled sends it again.
+  void note_failure(const SpotRequest& request, const char* why) {
+    const std::scoped_lock lock(mutex);
+    if (const auto held = failures.pass(request.client_id, std::chrono::steady_clock::now()))
+      log::error("request {} of {}: {}{}", request.seq, request.client_id, why, held_back(*held));
   }
 
   void learn(const Spot& spot, const SpotReply& reply) {
@@ -113,7 +124,7 @@ SpotReply Localizer::locate(const SpotRequest& request) {
     reply = impl_->answer(request);
   } catch (
       const std::exception& trouble) {  // out of memory, a library's complaint: the client still gets an answer
-    log::error("request {} of {}: {}", request.seq, request.client_id, trouble.what());
+    impl_->note_failure(request, trouble.what());
     reply = refusal(request, Reason::not_found, "the server failed on this request");
   }
   reply.server_id = impl_->options.server_id;

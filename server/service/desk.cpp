@@ -122,7 +122,9 @@ void Desk::work_on(const wire::Arrival& arrival) {
   try {
     reply = backend_.locate(arrival.request);
   } catch (const std::exception& error) {  // a worker must not take the server with it
-    log::error("request {} of {}: {}", arrival.request.seq, arrival.from.client_id, error.what());
+    if (const auto held = may_say(arrival.from.client_id + " failed"))
+      log::error("request {} of {}: {}{}", arrival.request.seq, arrival.from.client_id, error.what(),
+                 held_back(*held));
     reply = refusal(arrival.request, Reason::not_found, fmt::format("internal error: {}", error.what()));
   }
   bool is_current = false;
@@ -136,9 +138,15 @@ void Desk::work_on(const wire::Arrival& arrival) {
   finish(arrival, std::move(reply));
 }
 
+std::optional<std::uint64_t> Desk::may_say(const std::string& of) {
+  const std::scoped_lock lock(mutex_);
+  return lines_.pass(of, std::chrono::steady_clock::now());
+}
+
 void Desk::refuse(const wire::Arrival& arrival, Reason reason, std::string text) {
-  log::debug("request {} of {} refused: {}: {}", arrival.request.seq, arrival.from.client_id, name_of(reason),
-             text);
+  if (const auto held = may_say(fmt::format("{} {}", arrival.from.client_id, name_of(reason))))
+    log::debug("request {} of {} refused: {}: {}{}", arrival.request.seq, arrival.from.client_id,
+               name_of(reason), text, held_back(*held));
   finish(arrival, refusal(arrival.request, reason, std::move(text)));
 }
 

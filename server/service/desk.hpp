@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/base/line_limit.hpp"
 #include "server/service/service_options.hpp"
 #include "server/service/sessions.hpp"
 #include "server/service/waiting_line.hpp"
@@ -47,6 +48,7 @@ class Desk {
   void enqueue(wire::Arrival arrival);
   [[nodiscard]] std::optional<wire::Arrival> take_waiting(const std::string& client_id);
   void work_on(const wire::Arrival& arrival);
+  [[nodiscard]] std::optional<std::uint64_t> may_say(const std::string& of);  ///< see SourceLimit
   void refuse(const wire::Arrival& arrival, Reason reason, std::string text);
   void finish(const wire::Arrival& arrival, SpotReply reply);
 
@@ -58,6 +60,7 @@ class Desk {
   Sessions sessions_;
   std::deque<wire::Arrival> held_;
   WaitingLine line_;
+  SourceLimit lines_;  // by client and reason
   bool stopping_ = false;
   std::atomic<std::uint64_t> answered_ = 0, verified_ = 0, refused_ = 0;
   std::vector<std::thread> workers_;

@@ -1,8 +1,24 @@
 #include "server/service/service.hpp"
 
+#include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
 
 namespace liloc {
+namespace {
+
+/// Clients come and go as they like, and under any name. For the dispatcher's thread.
+class Comings {
+ public:
+  void say(const std::string& id, const char* what) {
+    if (const auto held = limit_.pass(id, std::chrono::steady_clock::now()))
+      log::info("client {} {}{}", id, what, held_back(*held));
+  }
+
+ private:
+  SourceLimit limit_;
+};
+
+}  // namespace
 
 Service::Service(const ServiceOptions& options, ServiceBackend backend)
     : desk_(options, std::move(backend), [this](const wire::Sender& to, SpotReply reply) {
@@ -15,13 +31,14 @@ Result<std::unique_ptr<Service>> Service::create(wire::Dispatcher& dispatcher, c
   if (!valid) return tl::unexpected(valid.error());
   std::unique_ptr<Service> service(new Service(*valid, std::move(backend)));
   Desk* desk = &service->desk_;
+  const auto here = std::make_shared<Comings>(), left = std::make_shared<Comings>();
   auto link = wire::ServerLink::create(
       dispatcher, {.server_id = valid->server_id, .max_clients = valid->max_clients},
       {.on_request = [desk](wire::Arrival arrival) { desk->submit(std::move(arrival)); },
-       .on_join = [](const std::string& id) { log::info("client {} is here", id); },
+       .on_join = [here](const std::string& id) { here->say(id, "is here"); },
        .on_leave =
-           [desk](const std::string& id) {
-             log::info("client {} has left", id);
+           [desk, left](const std::string& id) {
+             left->say(id, "has left");
              desk->client_left(id);
            },
        .on_gone = [desk](std::uint64_t publication) { desk->publication_gone(publication); }});

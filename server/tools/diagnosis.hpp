@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/geometry/camera.hpp"
+#include "common/wire/participant.hpp"
 #include "common/wire/status.hpp"
 
 namespace liloc::toolbox {
@@ -20,11 +21,20 @@ struct Finding {
 /// A kernel setting that should be at least `wanted`; `value` is empty where it cannot be read.
 [[nodiscard]] Finding check_setting(const std::string& name, std::optional<long> value, long wanted);
 
-/// The newest status of each server that was heard; `site` is what they should serve, where that is known.
-[[nodiscard]] std::vector<Finding> check_servers(const std::vector<wire::ServerStatus>& servers,
+/// A file that was given and cannot be used; the error names it.
+[[nodiscard]] Finding unreadable_file(const Error& error);
+[[nodiscard]] Finding unusable_network(const Error& error);
+
+/// What was heard of servers.
+struct Heard {
+  std::vector<wire::ServerStatus> servers;  ///< the newest status of each
+  std::vector<std::string> unreadable;      ///< what was wrong with others, each once
+};
+/// `seat` is where was listened; `site` what the servers should serve, where that is known.
+[[nodiscard]] std::vector<Finding> check_servers(const Heard& heard, const wire::DomainOptions& seat,
                                                  const std::optional<Site>& site);
 
-/// "ok    what", "warn  what; remedy", "FAIL  what; remedy".
+/// "ok    what", "warn  what; remedy", "FAIL  what; remedy", on one line without control characters.
 [[nodiscard]] std::string line_of(const Finding& finding);
 
 }  // namespace liloc::toolbox

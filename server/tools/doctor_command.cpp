@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "common/command/checks.hpp"
@@ -31,17 +32,22 @@ std::optional<long> setting(const std::string& file) {
   return in >> value ? std::optional(value) : std::nullopt;
 }
 
-/// The newest status of each server.
-Result<std::vector<wire::ServerStatus>> listen(const DoctorArguments& arguments) {
+constexpr std::size_t kMostUnreadable = 8;
+
+Result<Heard> listen(const DoctorArguments& arguments) {
   const auto participant = wire::Participant::create(arguments.seat);
   if (!participant) return tl::unexpected(participant.error());
   auto dispatcher = wire::Dispatcher::create(*participant);
   if (!dispatcher) return tl::unexpected(dispatcher.error());
   std::mutex mutex;
   std::map<std::string, wire::ServerStatus> heard;
+  std::set<std::string> unreadable;
   const Status subscribed = wire::subscribe_status(**dispatcher, [&](Result<wire::ServerStatus> status) {
     const std::scoped_lock lock(mutex);
-    if (status) heard[status->server_id] = std::move(*status);
+    if (status)
+      heard[status->server_id] = std::move(*status);
+    else if (unreadable.size() < kMostUnreadable)
+      unreadable.insert(status.error().message);
   });
   if (!subscribed) return tl::unexpected(subscribed.error());
   (*dispatcher)->start();
@@ -54,9 +60,9 @@ Result<std::vector<wire::ServerStatus>> listen(const DoctorArguments& arguments)
     if (first_ms >= 0 && watch.elapsed_ms() - first_ms > kSecondServer.count()) break;
   }
   (*dispatcher)->stop();
-  std::vector<wire::ServerStatus> servers;
-  for (auto& [id, status] : heard) servers.push_back(std::move(status));
-  return servers;
+  Heard found{{}, {unreadable.begin(), unreadable.end()}};
+  for (auto& [id, status] : heard) found.servers.push_back(std::move(status));
+  return found;
 }
 
 /// Whether a file can be read, and what it holds.
@@ -66,7 +72,7 @@ std::optional<T> read(const std::string& file, Result<T> (*reader)(const std::fi
   if (file.empty()) return std::nullopt;
   const auto content = reader(file);
   if (!content) {
-    findings.push_back({Verdict::bad, content.error().message});
+    findings.push_back(unreadable_file(content.error()));
     return std::nullopt;
   }
   findings.push_back({Verdict::good, fmt::format("{}: {}", file, describe(*content))});
@@ -84,11 +90,11 @@ int run(const DoctorArguments& arguments) {
     return fmt::format("{}, {}x{}, {}", d.id, d.camera.width, d.camera.height,
                        d.T_imu_sensor ? "with IMU" : "without IMU");
   });
-  const auto servers = listen(arguments);
-  if (!servers) {
-    findings.push_back({Verdict::bad, servers.error().message});
+  const auto heard = listen(arguments);
+  if (!heard) {
+    findings.push_back(unusable_network(heard.error()));
   } else {
-    for (auto& finding : check_servers(*servers, site)) findings.push_back(std::move(finding));
+    for (auto& finding : check_servers(*heard, arguments.seat, site)) findings.push_back(std::move(finding));
   }
   for (const Finding& finding : findings) fmt::print("{}\n", line_of(finding));
   return std::ranges::any_of(findings, [](const Finding& f) { return f.verdict == Verdict::bad; }) ? kFailed

@@ -26,5 +26,13 @@ TEST(Log, LinesGoWhereTheProgramSays) {
   EXPECT_THAT(lines, testing::ElementsAre("2 1 of 2"));
 }
 
+TEST(Log, NoControlCharacterReachesTheSink) {
+  std::vector<std::string> lines;
+  set_sink([&](Level, std::string_view line) { lines.emplace_back(line); });
+  warning("{} is here", "\x1b[2Jedge1\n2026-01-01 forged \xc2\x9b\x7f B\xc3\xb6");
+  set_sink({});
+  EXPECT_THAT(lines, testing::ElementsAre("?[2Jedge1 2026-01-01 forged \xc2?? B\xc3\xb6 is here"));
+}
+
 }  // namespace
 }  // namespace liloc::log

@@ -52,6 +52,18 @@ TEST(Depth, RangeLimitsAndNoReturnAreDropped) {
   EXPECT_EQ(depth_to_cloud(image, kCamera, {0.25, 8.5, 0.0})->size(), 64U * 48U - 3U);
 }
 
+TEST(Depth, TheLargestValueIsNoReturnWhateverTheScale) {
+  Camera fine = kCamera;
+  fine.depth_scale_m = 0.0001;  // 65535 would be a wall at 6.55 m
+  DepthImage image = plane_image({0, 0, 1}, 2.0);
+  std::ranges::fill(image.units, std::uint16_t{20'000});
+  std::fill_n(image.units.begin(), 64 * 24, std::uint16_t{65535});
+  EXPECT_EQ(depth_to_cloud(image, fine)->size(), 64U * 24U);
+  mark_missing(image);
+  EXPECT_EQ(std::ranges::count(image.units, 0), 64 * 24);
+  EXPECT_EQ(std::ranges::count(image.units, 20'000), 64 * 24);
+}
+
 TEST(Depth, APixelThatHangsInTheAirIsDropped) {
   DepthImage image = plane_image({0, 0, 1}, 2.0);
   image.units[64 * 20 + 30] = 1500;
@@ -75,6 +87,24 @@ TEST(Camera, ZeroIntrinsicsAreNamed) {
   camera.depth_scale_m = NAN;
   EXPECT_FALSE(camera.validated("x"));
   EXPECT_TRUE(kCamera.validated("x"));
+}
+
+TEST(Camera, AnglesOfViewAndScalesThatNoSensorHasAreNamed) {
+  const auto error_with = [](double fx, double fy, double scale_m) {
+    Camera camera = kCamera;
+    camera.fx = fx;
+    camera.fy = fy;
+    camera.depth_scale_m = scale_m;
+    const auto valid = camera.validated("x");
+    return valid ? std::string("none") : valid.error().message;
+  };
+  EXPECT_THAT(error_with(0.5, 52, 0.001), testing::HasSubstr("x.fx is 0.5: 64 pixels would see 178 deg"));
+  EXPECT_THAT(error_with(50, 1e12, 0.001), testing::HasSubstr("x.fy is 1000000000000"));
+  EXPECT_THAT(error_with(50, NAN, 0.001), testing::HasSubstr("x.fy is nan"));
+  EXPECT_THAT(error_with(50, 52, 1), testing::HasSubstr("x.depth_scale is 1"));
+  EXPECT_THAT(error_with(50, 52, 1e-6), testing::HasSubstr("x.depth_scale is 1e-06"));
+  EXPECT_EQ(error_with(50, 52, 0.00025), "none");
+  EXPECT_TRUE((Camera{1024, 16, 512, 800, 512, 8, 0.001}.validated("few rows")));
 }
 
 TEST(Camera, AShrunkCameraSeesTheSameRays) {

@@ -45,6 +45,7 @@ struct Ceiling {
     sink.add_depth = [this](std::size_t lidar, const DepthImage& depth) -> Status {
       if (depth.stamp_ns == 666) return fail("stamp is 666");
       ++depth_frames[lidar];
+      newest_ns[lidar] = depth.stamp_ns;
       value_at_5 = depth.units[5];
       return {};
     };
@@ -63,6 +64,7 @@ struct Ceiling {
   std::unique_ptr<wire::Dispatcher> dispatcher;
   std::array<std::atomic<int>, 2> depth_frames{}, point_frames{};
   std::atomic<int> told = 0, value_at_5 = 0;
+  std::array<std::atomic<StampNs>, 2> newest_ns{};
   std::atomic<std::size_t> points = 0;
   std::unique_ptr<Ingest> ingest;
 };
@@ -138,6 +140,59 @@ TEST(Ingest, ASilentLidarIsReportedAndComesBack) {
   EXPECT_TRUE(eventually([&] {
     return publisher->publish(image(++stamp_ns)) && ceiling.ingest->health()[0].state == LidarState::ok;
   }));
+}
+
+/// Sends an image of each LiDAR at 10 Hz, stamped by the wall clock plus `ahead_s` of the second.
+struct Streams {
+  explicit Streams(Ceiling& ceiling)
+      : publishers{wire::DepthPublisher::create(ceiling.seat, "ceiling0", kCamera).value(),
+                   wire::DepthPublisher::create(ceiling.seat, "ceiling1", kCamera).value()} {
+    EXPECT_TRUE(eventually([&] { return publishers[0].readers() == 1 && publishers[1].readers() == 1; }));
+  }
+  void send(std::uint16_t second_units, double ahead_s) {
+    const StampNs now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                               std::chrono::system_clock::now().time_since_epoch())
+                               .count();
+    DepthImage second = image(now_ns + from_seconds(ahead_s));
+    std::ranges::fill(second.units, second_units);
+    EXPECT_TRUE(publishers[0].publish(image(now_ns)));
+    EXPECT_TRUE(publishers[1].publish(second));
+    std::this_thread::sleep_for(100ms);
+  }
+  bool reaches(Ceiling& ceiling, LidarState state, std::uint16_t units, double ahead_s = 0) {
+    for (int i = 0; i < 60; ++i) {
+      send(units, ahead_s);
+      if (ceiling.ingest->health()[1].state == state) return true;
+    }
+    return false;
+  }
+  std::array<wire::DepthPublisher, 2> publishers;
+};
+
+TEST(Ingest, ALidarWithoutReturnsIsBlindAndOneInAnotherUnitIsImplausible) {
+  Ceiling ceiling(127);
+  Streams streams(ceiling);
+  EXPECT_TRUE(streams.reaches(ceiling, LidarState::blind, 0));
+  EXPECT_LT(ceiling.ingest->health()[1].returns, 0.01);
+  EXPECT_TRUE(streams.reaches(ceiling, LidarState::ok, 2000));
+  EXPECT_TRUE(streams.reaches(ceiling, LidarState::implausible, 20'000)) << "a tenth of a millimetre";
+  EXPECT_NEAR(ceiling.ingest->health()[1].range_m, 20, 1e-3);
+  EXPECT_TRUE(streams.reaches(ceiling, LidarState::ok, 2000));
+  EXPECT_TRUE(streams.reaches(ceiling, LidarState::blind, 65535)) << "the largest value is no return";
+  EXPECT_EQ(ceiling.ingest->health()[0].state, LidarState::ok);
+}
+
+TEST(Ingest, AClockAheadIsLeftOutThenCorrectedAndTold) {
+  Ceiling ceiling(128);
+  Streams streams(ceiling);
+  EXPECT_TRUE(streams.reaches(ceiling, LidarState::clock_off, 2000, 37));
+  EXPECT_TRUE(streams.reaches(ceiling, LidarState::ok, 2000, 37));
+  const auto health = ceiling.ingest->health()[1];
+  EXPECT_TRUE(health.clock_corrected);
+  EXPECT_NEAR(health.clock_offset_s, 37, 0.1);
+  streams.send(2000, 37);
+  EXPECT_NEAR(to_seconds(ceiling.newest_ns[1] - ceiling.newest_ns[0]), 0, 0.15);
+  EXPECT_FALSE(ceiling.ingest->health()[0].clock_corrected);
 }
 
 TEST(Ingest, ASiteWithoutLidarsIsRefused) {

@@ -9,6 +9,55 @@ using namespace std::chrono_literals;
 using wire::LidarState;
 
 const LidarMonitor::Time kStart{1000s};
+constexpr FrameContent kRoom{0.9, 1.0, 2.5, 4.5}, kNothing{};
+
+/// A LiDAR at 10 Hz that shows each of these for some seconds; its state after the last.
+LidarState state_after(const std::vector<std::pair<FrameContent, int>>& shown) {
+  LidarMonitor monitor("ceiling0", 10, kStart);
+  auto now = kStart;
+  for (const auto& [content, seconds] : shown)
+    for (int i = 0; i < 10 * seconds; ++i) monitor.on_frame(now += 100ms, content);
+  return monitor.assess(now).state;
+}
+
+/// The room in another unit.
+FrameContent in_units_of(double factor) {
+  return {0.9, factor > 2 ? 0.05 : factor < 0.1 ? 0.0 : 0.9, factor * kRoom.range_m, factor * kRoom.far_m};
+}
+
+TEST(LidarMonitor, FramesWithoutReturnsAreBlind) {
+  EXPECT_EQ(state_after({{kNothing, 1}}), LidarState::blind);
+  EXPECT_EQ(state_after({{kRoom, 10}, {kNothing, 3}}), LidarState::blind);
+  EXPECT_EQ(state_after({{kNothing, 3}, {kRoom, 2}}), LidarState::ok);
+  EXPECT_EQ(state_after({{{0.3, 1, 2.5, 4.5}, 3}}), LidarState::ok) << "many missing returns are no blindness";
+}
+
+TEST(LidarMonitor, AWrongUnitIsImplausibleFromTheStart) {
+  for (const double factor : {0.001, 0.1, 0.25, 4.0, 10.0, 1000.0})
+    EXPECT_EQ(state_after({{in_units_of(factor), 2}}), LidarState::implausible) << factor;
+}
+
+TEST(LidarMonitor, ARangeThreeTimesTheUsualIsImplausibleUntilItIsBack) {
+  const FrameContent hall{0.9, 0.9, 2.0, 8.0}, other{0.9, 0.9, 8.0, 8.4};
+  EXPECT_EQ(state_after({{hall, 10}}), LidarState::ok);
+  EXPECT_EQ(state_after({{other, 10}}), LidarState::ok) << "neither is strange by itself";
+  EXPECT_EQ(state_after({{hall, 10}, {other, 100}}), LidarState::implausible);
+  EXPECT_EQ(state_after({{hall, 10}, {other, 100}, {hall, 3}}), LidarState::ok);
+}
+
+TEST(LidarMonitor, ACrowdBeforeItIsPlausible) {
+  EXPECT_EQ(state_after({{kRoom, 10}, {{0.8, 1, 1.3, 3.5}, 60}}), LidarState::ok);
+}
+
+TEST(LidarMonitor, TellsWhatItSeesAndUsedToSee) {
+  LidarMonitor monitor("ceiling0", 10, kStart);
+  auto now = kStart;
+  for (int i = 0; i < 100; ++i) monitor.on_frame(now += 100ms, kRoom);
+  const auto health = monitor.assess(now);
+  EXPECT_DOUBLE_EQ(health.returns, 0.9);
+  EXPECT_DOUBLE_EQ(health.range_m, 2.5);
+  EXPECT_NEAR(health.usual_range_m, 2.5, 1e-9);
+}
 
 TEST(LidarMonitor, WaitsAtFirstThenIsSilent) {
   const LidarMonitor monitor("ceiling0", 10, kStart);
@@ -19,13 +68,13 @@ TEST(LidarMonitor, WaitsAtFirstThenIsSilent) {
 TEST(LidarMonitor, FallsSilentAndComesBack) {
   LidarMonitor monitor("ceiling0", 10, kStart);
   auto now = kStart;
-  for (int i = 0; i < 50; ++i) monitor.on_frame(now += 100ms);
+  for (int i = 0; i < 50; ++i) monitor.on_frame(now += 100ms, kRoom);
   EXPECT_EQ(monitor.assess(now).state, LidarState::ok);
   EXPECT_NEAR(monitor.assess(now).measured_hz, 10, 1);
   EXPECT_EQ(monitor.assess(now + 1100ms).state, LidarState::silent);
   now += 10s;
   for (int i = 0; i < 30; ++i) {
-    monitor.on_frame(now += 100ms);
+    monitor.on_frame(now += 100ms, kRoom);
     EXPECT_EQ(monitor.assess(now).state, LidarState::ok) << "not slow for its silence, frame " << i;
   }
   EXPECT_EQ(monitor.assess(now).state, LidarState::ok);
@@ -35,15 +84,15 @@ TEST(LidarMonitor, FallsSilentAndComesBack) {
 TEST(LidarMonitor, IsSlowUnderHalfTheExpectedRate) {
   LidarMonitor monitor("ceiling0", 10, kStart);
   auto now = kStart;
-  for (int i = 0; i < 30; ++i) monitor.on_frame(now += 250ms);
+  for (int i = 0; i < 30; ++i) monitor.on_frame(now += 250ms, kRoom);
   EXPECT_EQ(monitor.assess(now).state, LidarState::slow);
-  for (int i = 0; i < 30; ++i) monitor.on_frame(now += 125ms);
+  for (int i = 0; i < 30; ++i) monitor.on_frame(now += 125ms, kRoom);
   EXPECT_EQ(monitor.assess(now).state, LidarState::ok);
 }
 
 TEST(LidarMonitor, NamesWhatIsMalformedUntilAGoodFrameComes) {
   LidarMonitor monitor("ceiling0", 10, kStart);
-  monitor.on_frame(kStart + 100ms);
+  monitor.on_frame(kStart + 100ms, kRoom);
   monitor.on_malformed(kStart + 150ms, "step is 1");
   EXPECT_EQ(monitor.assess(kStart + 160ms).state, LidarState::ok)
       << "one bad frame among good ones is only counted";
@@ -53,13 +102,13 @@ TEST(LidarMonitor, NamesWhatIsMalformedUntilAGoodFrameComes) {
   EXPECT_EQ(health.state, LidarState::malformed);
   EXPECT_EQ(health.malformed, 3U);
   EXPECT_EQ(health.last_error, "step is 3");
-  monitor.on_frame(kStart + 300ms);
+  monitor.on_frame(kStart + 300ms, kRoom);
   EXPECT_EQ(monitor.assess(kStart + 350ms).state, LidarState::ok);
 }
 
 TEST(LidarMonitor, ASlowLidarHasFivePeriodsBeforeItIsSilent) {
   LidarMonitor monitor("ceiling0", 1, kStart);
-  monitor.on_frame(kStart + 1s);
+  monitor.on_frame(kStart + 1s, kRoom);
   EXPECT_NE(monitor.assess(kStart + 5s).state, LidarState::silent);
   EXPECT_EQ(monitor.assess(kStart + 7s).state, LidarState::silent);
 }

@@ -44,6 +44,7 @@ NEEDS = {
     "client/engine": ["client/odometry", "common/codec", "common/protocol"],
     "client/session": ["client/engine"],
     "client/api": ["client/include", "client/session", "common/wire"],
+    "client/examples": ["client/include"],
     "client/app": ["client/api", "common/recording", "common/command"],
     "client/python": ["client/include"],
     # The tools and trials see both sides.

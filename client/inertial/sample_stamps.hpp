@@ -7,5 +7,6 @@ namespace liloc {
 // them that lie closer.
 constexpr StampNs kClosestSampleNs = 20'000;
 constexpr std::size_t kJudgedSamples = 20;
+constexpr StampNs kLargestGapNs = from_ms(50);  // between IMU samples that are integrated over
 
 }  // namespace liloc

@@ -5,6 +5,7 @@
 #include "client/engine/pose_doubt.hpp"
 #include "client/engine/request_maker.hpp"
 #include "client/engine/request_schedule.hpp"
+#include "client/inertial/imu_trust.hpp"
 #include "client/odometry/external_odometry.hpp"
 #include "client/odometry/image_thinning.hpp"
 #include "client/odometry/informativeness.hpp"
@@ -21,7 +22,9 @@ constexpr int kSilentIntervals = 3;             // without an answer, the server
 constexpr StampNs kToldFor = from_ms(3000);     // that the clock was set; by hand
 constexpr StampNs kClosestFrames = from_ms(1);  // no depth sensor is as quick as that
 constexpr std::size_t kJudgedFrames = 3;        // judge the unit of the stamps, by their mean rise; by hand
-constexpr std::size_t kFewestSurfels = 60;      // a frame with fewer cannot be matched; by hand
+constexpr double kSeenRotation =
+    0.5;  // share that the scene shows of a rotation to compare a gyro with; by hand
+constexpr std::size_t kFewestSurfels = 60;  // a frame with fewer cannot be matched; by hand
 
 OdometryOptions odometry_options(const EngineOptions& o, int thinning) {
   OdometryOptions options;
@@ -71,12 +74,13 @@ struct Engine::Impl {
   /// What the frame shows: `points`, or what `camera` measured.
   [[nodiscard]] Result<Cloud> cloud_of(const DepthImage& image, const Camera& camera,
                                        const Cloud* points) const;
+  void judge_imu(StampNs stamp_ns, const OdometryStep& step);
   void note_motion(StampNs stamp_ns, const Placed& placed);
   void ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed);
 
   EngineOptions options;
   int thinning;
-  std::optional<ImuTrack> imu;
+  std::optional<ImuTrust> imu;
   std::optional<ExternalOdometry> external;
   Informativeness informativeness;
   Odometry odometry;
@@ -114,6 +118,7 @@ void Engine::Impl::set_clock_back(StampNs by_ns) {
   doubt.clock_set(by_ns);
   odometry.clock_set();
   if (external) external->frames_clock_set();
+  if (imu) imu->frames_clock_set();
   set_back_ns = last_ns + by_ns;
   set_back_by_ns = -by_ns;
 }
@@ -154,8 +159,21 @@ Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points,
   // itself.
   const bool matchable =
       enough && spread.fault != FrameFault::covered && spread.fault != FrameFault::too_few_points;
-  placed.step = odometry.step(small, surfels, matchable, imu ? &*imu : nullptr);
+  placed.step = odometry.step(small, surfels, matchable, imu ? imu->believed() : nullptr);
   return placed;
+}
+
+/// What registration measured from one frame to the next counts alone: not guesses, nor who may follow
+/// somebody.
+void Engine::Impl::judge_imu(StampNs stamp_ns, const OdometryStep& step) {
+  const bool measured = !external && step.overlap > 0 && step.converged && !step.doubtful && !step.jumped &&
+                        step.observed.head<3>().minCoeff() > kSeenRotation;
+  std::optional<Eigen::Matrix3d> R_odom_imu;
+  if (measured) R_odom_imu = step.T_odom_sensor.linear() * options.T_imu_sensor->linear().transpose();
+  const bool believed = imu->believed() != nullptr;
+  imu->saw(stamp_ns, R_odom_imu);
+  if (inputs.contradicted()) imu->strained();
+  if (believed && imu->believed() == nullptr) inputs.forget();
 }
 
 void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed) {
@@ -166,7 +184,7 @@ void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, cons
   }
   if (!schedule.due(image.stamp_ns, placed.informative, !placed.step.doubtful)) return;
   auto made = cloud_of(image, options.camera, points).and_then([&](const Cloud& cloud_sensor) {
-    return requests.make(cloud_sensor, odometry.map(), imu ? &*imu : nullptr,
+    return requests.make(cloud_sensor, odometry.map(), imu ? imu->believed() : nullptr,
                          link.located(placed.step.segment));
   });
   if (!made) {
@@ -209,6 +227,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.residual_m = step.residual_m;
   frame.observed = step.observed;
   inputs.note(spread.fault, step.residual_m, step.strain);
+  if (imu) judge_imu(image.stamp_ns, step);
   doubt.travelled(image.stamp_ns, step, requests.motion_sd(),
                   {inputs.contradicted(), !external && placed->informative && step.method == "guess"});
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
@@ -268,7 +287,7 @@ std::string Engine::problem() const {
   if (std::string problem = impl_->clock_problem(); !problem.empty()) return problem;
   if (std::string problem = impl_->inputs.problem(); !problem.empty()) return problem;
   if (impl_->external && !impl_->external->placed()) return "no odometry for the newest frame";
-  return impl_->imu ? impl_->imu->problem(impl_->last_ns) : "";
+  return impl_->imu ? impl_->imu->problem() : "";
 }
 
 std::optional<Pose> Engine::T_map_odom() const {

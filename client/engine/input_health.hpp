@@ -12,6 +12,8 @@ class InputHealth {
   /// `residual_m`: of the frame's match with the local map; 0 where there was none. `strain`: how far the IMU's
   /// predictions were off, against what was expected (InertialFilter::strain).
   void note(FrameFault fault, double residual_m, double strain);
+  /// The matches so far say nothing about the next ones.
+  void forget() { matches_.clear(); }
   /// IMU and depth contradict each other persistently.
   [[nodiscard]] bool contradicted() const;
   /// For people; empty: nothing was noticed.

@@ -8,8 +8,9 @@
 namespace liloc {
 namespace {
 
-// Ten samples at 200 Hz; by hand.
-constexpr double kLargestGapS = 0.05;  // between neighbouring samples, or from a span's end to the next sample
+constexpr double kLargestGapS = to_seconds(kLargestGapNs);  // or from a span's end to the next sample
+// Of "up" from the nearest sample: drivers that send in batches are that late; by hand.
+constexpr double kUpReachS = 0.1;
 // Weight of a new sample in the smoothed values that judge stillness; by hand.
 constexpr double kQuick = 0.1;
 constexpr double kStandardGravity = 9.80665;  // m/s^2, by definition (CGPM 1901)
@@ -23,22 +24,24 @@ constexpr double kMostRate = 50, kMostForce = 320;
 constexpr StampNs kWildFor = from_ms(3000);  // it is told; by hand
 // No samples for so long are told; a clipped one leaves the IMU out for so long. By hand.
 constexpr StampNs kSilent = from_ms(500), kClippedFor = from_ms(3000);
+constexpr StampNs kHalvesFor = from_ms(500);                    // is no hiccup; by hand
 constexpr double kDoubtTimeConstantS = 0.5, kDoubtSdRad = 0.3;  // of "up" in that time; by hand
 // Samples of context for the filters on either side of a span; six standard deviations of the Gaussian filter.
 constexpr int kMargin = 12;
 
 }  // namespace
 
-/// Some drivers send g. Nothing that lies on a table or is carried feels 1 m/s^2.
+/// Some drivers send g, some convert twice. Nothing that lies on a table or is carried feels 1 m/s^2, or 10 g.
 void ImuTrack::find_unit(const ImuSample& sample) {
   if (raw_count_ >= kUnitSamples) return;
   raw_force_sum_ += sample.specific_force_m_s2.norm();
   if (++raw_count_ < kUnitSamples) return;
   const double mean = raw_force_sum_ / raw_count_;
-  if (mean < 0.7 || mean > 1.4) return;
-  unit_ = kStandardGravity;
-  log::warning("IMU: a specific force of {:.2f} must be in g; taken times {}: have the driver send m/s^2", mean,
-               kStandardGravity);
+  const bool in_g = mean > 0.7 && mean<1.4, twice = mean> 70 && mean < 140;
+  if (!in_g && !twice) return;
+  unit_ = in_g ? kStandardGravity : 1 / kStandardGravity;
+  log::warning("IMU: a specific force of {:.2f} must be {}; taken times {:.3f}: have the driver send m/s^2",
+               mean, in_g ? "in g" : "9.81 times too large", unit_);
   for (Entry& entry : entries_) entry.raw.specific_force_m_s2 *= unit_;
   force_now_ *= unit_;
   force_sum_ *= unit_;
@@ -67,8 +70,11 @@ std::string ImuTrack::problem(StampNs now_ns) const {
   if (now_ns - entries_.back().raw.stamp_ns > kSilent)
     return fmt::format("no IMU samples for {:.1f} s", to_seconds(now_ns - entries_.back().raw.stamp_ns));
   if (doubtful(now_ns)) return "the IMU is at the end of its range";
-  if (unit_ != 1) return "the IMU sends g in place of m/s^2 (corrected)";
-  return "";
+  if (unit_ > 1) return "the IMU sends g in place of m/s^2 (corrected)";
+  if (unit_ < 1) return "the accelerometer's numbers are 9.81 times too large (corrected)";
+  if (halves_.newest_ns - halves_.since_ns < kHalvesFor || now_ns - halves_.newest_ns > kHalvesFor) return "";
+  if (halves_.force_m_s2.isZero()) return "the accelerometer sends nothing but zeros";
+  return "the IMU sends gyro and accelerometer in messages of their own, with zeros for the other (merged)";
 }
 
 Status ImuTrack::check(const ImuSample& sample) {
@@ -80,7 +86,7 @@ Status ImuTrack::check(const ImuSample& sample) {
   if (*set_by_ns != 0) set_clock(*set_by_ns);
   const double most_rate = rate.cwiseAbs().maxCoeff(), most_force = unit_ * force.cwiseAbs().maxCoeff();
   if (most_rate <= kMostRate && most_force <= kMostForce) return {};
-  wild_ns_ = sample.stamp_ns;
+  wild_ns_ = sample.stamp_ns - ahead_ns_;
   return fail("IMU sample at {} ns says {:.4g} rad/s and {:.4g} m/s^2, no such sensor measures over {} and {}",
               sample.stamp_ns, most_rate, most_force, kMostRate, kMostForce);
 }
@@ -93,9 +99,61 @@ void ImuTrack::set_clock(StampNs by_ns) {
   clipped_ns_ = wild_ns_ = 0;
 }
 
+/// Drivers with a message for each sensor fill the other's part with zeros, which no accelerometer measures:
+/// such a sample gets the newest force. False: it was an accelerometer's, and that is all it tells.
+bool ImuTrack::merge(ImuSample& sample) {
+  Halves& h = halves_;
+  if (!sample.specific_force_m_s2.isZero()) {
+    const bool half = h.now && sample.angular_velocity_rad_s.isZero();
+    if (unit_ * sample.specific_force_m_s2.cwiseAbs().maxCoeff() <= kMostForce)
+      h.force_m_s2 = sample.specific_force_m_s2;
+    h.now = half;
+    return !half;
+  }
+  const StampNs stamp_ns = sample.stamp_ns - ahead_ns_;
+  if (stamp_ns < h.newest_ns || stamp_ns - h.newest_ns > kHalvesFor) h.since_ns = stamp_ns;
+  h.newest_ns = stamp_ns;
+  h.now = true;
+  sample.specific_force_m_s2 = h.force_m_s2;
+  return true;
+}
+
+void ImuTrack::take_off(StampNs ahead_ns) {
+  ahead_ns_ += ahead_ns;
+  for (Entry& entry : entries_) entry.raw.stamp_ns -= ahead_ns;
+  for (StampNs* stamp : {&first_ns_, &clipped_ns_, &wild_ns_, &halves_.since_ns, &halves_.newest_ns})
+    if (*stamp != 0) *stamp -= ahead_ns;
+}
+
+void ImuTrack::begin_anew(const Eigen::Vector3d& bias_rad_s, const Eigen::Vector3d& up_imu) {
+  calibrating_ = false;
+  calibrated_s_ = 0;
+  bias_ = bias_rad_s;
+  up_ = up_imu.isZero() ? force_now_.stableNormalized() : up_imu;
+  Eigen::Vector3d up = up_;
+  for (std::size_t i = entries_.size(); i-- > 0;) {
+    entries_[i].up = up;
+    if (i == 0) break;
+    const double dt = to_seconds(entries_[i].raw.stamp_ns - entries_[i - 1].raw.stamp_ns);
+    up = so3_exp(dt * (entries_[i].raw.angular_velocity_rad_s - bias_)) * up;
+  }
+}
+
+std::optional<StampNs> ImuTrack::newest_ns() const {
+  if (entries_.empty()) return std::nullopt;
+  return entries_.back().raw.stamp_ns;
+}
+
+bool ImuTrack::surrounds(StampNs stamp_ns) const {
+  return !entries_.empty() && entries_.front().raw.stamp_ns <= stamp_ns &&
+         entries_.back().raw.stamp_ns >= stamp_ns;
+}
+
 Status ImuTrack::add(const ImuSample& given) {
   ImuSample sample = given;
+  if (!merge(sample)) return {};
   if (const Status ok = check(sample); !ok) return ok;
+  sample.stamp_ns -= ahead_ns_;
   find_unit(sample);
   sample.specific_force_m_s2 *= unit_;
   if (clips(sample)) clipped_ns_ = sample.stamp_ns;
@@ -129,7 +187,7 @@ void ImuTrack::calibrate(const ImuSample& sample) {
   force_sum_ += sample.specific_force_m_s2;
   count_ += 1;
   calibrated_s_ = elapsed;
-  up_ = force_sum_.normalized();
+  up_ = force_sum_.stableNormalized();
   if (elapsed >= 0.5) {
     bias_ = gyro_sum_ / count_;
     gravity_m_s2_ = force_sum_.norm() / count_;
@@ -156,7 +214,7 @@ void ImuTrack::follow(const ImuSample& sample, double dt_s) {
   const double time_constant_s = doubt ? kDoubtTimeConstantS : options_.up_time_constant_s;
   if (gravity_off < (doubt ? 3 : 1) * options_.up_gate_m_s2)
     up_ += std::min(1.0, dt_s / time_constant_s) * (sample.specific_force_m_s2.stableNormalized() - up_);
-  up_.normalize();
+  up_ = up_.stableNormalized();
 }
 
 std::size_t ImuTrack::first_after(StampNs stamp_ns) const {
@@ -166,7 +224,7 @@ std::size_t ImuTrack::first_after(StampNs stamp_ns) const {
 }
 
 bool ImuTrack::covers(StampNs from_ns, StampNs to_ns) const {
-  if (entries_.size() < 2 || from_ns >= to_ns || doubtful(to_ns)) return false;
+  if (entries_.size() < 2 || from_ns >= to_ns || doubtful(to_ns) || up_.isZero()) return false;
   const std::size_t begin = first_after(from_ns), end = first_after(to_ns);
   if (begin == 0 || end == 0) return false;
   if (to_seconds(to_ns - entries_[end - 1].raw.stamp_ns) > kLargestGapS) return false;
@@ -224,7 +282,9 @@ std::optional<Eigen::Vector3d> ImuTrack::up(StampNs stamp_ns) const {
   if (entries_.empty()) return std::nullopt;
   const std::size_t after = first_after(stamp_ns);
   const Entry& e = entries_[after == 0 ? 0 : after - 1];
-  const double dt = std::clamp(to_seconds(stamp_ns - e.raw.stamp_ns), 0.0, kLargestGapS);
+  const double off_s = to_seconds(stamp_ns - e.raw.stamp_ns);
+  if (std::abs(off_s) > kUpReachS || e.up.isZero()) return std::nullopt;
+  const double dt = std::clamp(off_s, 0.0, kLargestGapS);
   return so3_exp(-dt * (e.raw.angular_velocity_rad_s - bias_)) * e.up;
 }
 

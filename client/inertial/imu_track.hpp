@@ -33,6 +33,18 @@ class ImuTrack {
   /// ignored.
   [[nodiscard]] Status add(const ImuSample& sample);
 
+  /// The stamps so far, and from now on, are ahead by so much: it is taken off.
+  void take_off(StampNs ahead_ns);
+  /// What was known of bias and gravity is replaced; `up_imu`: at the newest sample, zero where it is not
+  /// known.
+  void begin_anew(const Eigen::Vector3d& bias_rad_s, const Eigen::Vector3d& up_imu);
+
+  /// Empty before any sample.
+  [[nodiscard]] std::optional<StampNs> newest_ns() const;
+  /// There must be one.
+  [[nodiscard]] const ImuSample& newest() const { return entries_.back().raw; }
+  /// Some of what is kept is older and some newer.
+  [[nodiscard]] bool surrounds(StampNs stamp_ns) const;
   /// True when samples surround the span closely enough to integrate over it.
   [[nodiscard]] bool covers(StampNs from_ns, StampNs to_ns) const;
   /// R_from_to of the IMU by the gyro. The span must be covered.
@@ -44,8 +56,8 @@ class ImuTrack {
   /// As they came (in m/s^2), for preintegration; the first and the last lie at the span's ends. The span must
   /// be covered.
   [[nodiscard]] std::vector<ImuSample> samples(StampNs from_ns, StampNs to_ns) const;
-  /// Unit vector against gravity in IMU axes at a stamp within the last `keep_seconds`; empty before any
-  /// sample.
+  /// Unit vector against gravity in IMU axes at a stamp within the last `keep_seconds`; empty where no sample
+  /// is near, or the accelerometer says nothing.
   [[nodiscard]] std::optional<Eigen::Vector3d> up(StampNs stamp_ns) const;
   /// One standard deviation of `up`.
   [[nodiscard]] double up_sd_rad() const;
@@ -66,7 +78,13 @@ class ImuTrack {
     ImuSample raw;
     Eigen::Vector3d up;
   };
+  struct Halves {
+    Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< newest that was told
+    StampNs since_ns = 0, newest_ns = 0;                   ///< of samples with zeros for the accelerometer
+    bool now = false;                                      ///< the newest sample was one
+  };
   [[nodiscard]] Status check(const ImuSample& sample);
+  [[nodiscard]] bool merge(ImuSample& sample);
   void set_clock(StampNs by_ns);
   void find_unit(const ImuSample& sample);
   [[nodiscard]] bool clips(const ImuSample& sample) const;
@@ -86,6 +104,8 @@ class ImuTrack {
   double unit_ = 1;  ///< that turns the accelerometer's numbers into m/s^2
   double raw_force_sum_ = 0;
   int raw_count_ = 0;
+  Halves halves_;
+  StampNs ahead_ns_ = 0;    ///< taken off the stamps
   StampNs clipped_ns_ = 0;  ///< of the newest clipped sample
   StampNs wild_ns_ = 0;     ///< of the newest that no such sensor measures
   bool calibrating_ = true;

@@ -19,6 +19,9 @@ constexpr double kMountSdRad = 2e-4, kMountSdM = 5e-4;
 // Strain beyond which the predictions are doubted, and by which they are doubted in full: people push a device
 // about with so many m/s^2 and rad/s^2. It never came to 2 in 33 walks (DECISIONS.md); the rest by hand.
 constexpr double kMostStrain = 2, kFullDoubt = 6, kDoubtAccel = 4, kDoubtTurn = 10;
+// A new IMU may send another unit: it is doubted in full at first, and no more after a second of matches (14 at
+// 15 frames a second) that bear it out; by hand.
+constexpr double kProving = 0.85, kProven = 0.1;
 constexpr double kFade = 0.9;  // of the strain, per measurement; by hand
 // In rad/s and m/s^2: what no sensor in order has; by hand.
 constexpr double kMostGyroBias = 0.1, kMostAccelBias = 0.5;
@@ -102,7 +105,7 @@ void InertialFilter::predict(const std::vector<ImuSample>& samples) {
   P_.diagonal().segment<3>(kGyroBias).array() += kGyroWalk * kGyroWalk * t;
   P_.diagonal().segment<3>(kAccelBias).array() += kAccelWalk * kAccelWalk * t;
 
-  const double share = std::clamp((strain() - kMostStrain) / kFullDoubt, 0.0, 1.0);
+  const double share = std::max(unproven_, std::clamp((strain() - kMostStrain) / kFullDoubt, 0.0, 1.0));
   if (share > 0) doubt(t, share * kDoubtAccel, share * kDoubtTurn);
 
   state_.T_odom_imu.translation() += t * state_.velocity_m_s + 0.5 * t * t * state_.gravity_m_s2 + R * p.shift;
@@ -118,6 +121,7 @@ void InertialFilter::settle(const Pose& T_odom_imu, const Matrix6d& covariance) 
   const Matrix6d prior = P_.topLeftCorner<6, 6>(), certainty = prior.inverse();
   surprise_ = kFade * surprise_ + shift.dot(certainty * shift);
   expected_ = kFade * expected_ + 6 - (certainty * covariance).trace();
+  if (strain() < kMostStrain) unproven_ = unproven_ > kProven ? kProving * unproven_ : 0;
   // What is correlated with the pose follows it: regression of the state on the pose's error.
   const Eigen::Matrix<double, 18, 6> gain = P_.leftCols<6>() * certainty;
   apply(gain * shift);

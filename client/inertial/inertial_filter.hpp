@@ -63,6 +63,7 @@ class InertialFilter {
   void doubt(double seconds, double accel_sd_m_s2, double turn_sd_rad_s2);
   InertialState state_;
   Matrix18d P_ = Matrix18d::Zero();
+  double unproven_ = 1;  ///< share of doubt in an IMU whose predictions have not come true yet
   double surprise_ = 0,
          expected_ = 0;  ///< normalized innovation squared, and its mean for a right model; both fade
 };

@@ -51,9 +51,12 @@ bool MatchCheck::doubtful(const ScanMatch& match) const {
   return !match.settled && view(match).refuted_share() > kMovingShare;
 }
 
+double MatchCheck::evidence(const ScanMatch& match) const {
+  return match.overlap - kRefutedWeight * view(match).refuted_share();
+}
+
 double MatchCheck::merit(const ScanMatch& match) const {
-  return match.overlap - kRefutedWeight * view(match).refuted_share() -
-         kPriorWeight * guess_.surprise_of(match.T_map_sensor);
+  return evidence(match) - kPriorWeight * guess_.surprise_of(match.T_map_sensor);
 }
 
 }  // namespace liloc

@@ -20,7 +20,9 @@ class MatchCheck {
   /// Whether a match that may be believed is better marked: it follows somebody who walks perhaps, or the place
   /// is one of several.
   [[nodiscard]] bool doubtful(const ScanMatch& match) const;
-  /// By which matches from a vague guess compare: overlap, less what the view and the guess say against it.
+  /// By which matches compare: overlap, less what the view says against it.
+  [[nodiscard]] double evidence(const ScanMatch& match) const;
+  /// The same less what the guess says against it, for matches from a vague one.
   [[nodiscard]] double merit(const ScanMatch& match) const;
 
  private:

@@ -27,6 +27,10 @@ constexpr double kCalibratedGyroSd = 5e-4, kCalibratedForceSd = 0.03;
 // What a blind stretch shows of the errors of velocity and gravity that matches had left:
 // client/inertial/DECISIONS.md.
 constexpr double kBlindVelocitySd = 0.04, kBlindAccelSd = 0.05;
+// A frame's motion that nobody makes, and that a match hardly corrects; by hand.
+constexpr double kRivalRad = 0.15, kRivalM = 0.15;
+constexpr StampNs kLongestRivalNs = from_ms(400);  // a velocity that is older predicts nothing; by hand
+constexpr double kFailedShare = 0.2;               // of it, where no match was found; by hand
 // Of a frame to the next, over which a velocity still says something; by hand.
 constexpr StampNs kLongestStepNs = from_ms(1000);
 
@@ -42,20 +46,48 @@ Matrix6d sensor_of_imu(const Eigen::Vector3d& lever) {
 
 MotionGuess MotionModel::guess(const FrameStep& step, const ImuTrack* imu) {
   by_imu_ = imu != nullptr && imu->covers(step.from_ns, step.to_ns);
+  doubt_before_ = doubt_;
+  if (imu == nullptr) {  // what a filter learned from an IMU that is left out may be wrong
+    filter_.reset();
+    stood_still_ = false;
+  }
   if (!by_filter())
     doubt_.predict(to_seconds(step.to_ns - step.from_ns), by_imu_ ? kImuAccelSd : kAccelSd,
                    by_imu_ ? kImuTurnAccelSd : kTurnAccelSd);
-  const MotionGuess guess = by_imu_ ? by_imu(step, *imu) : by_constant_velocity(step);
+  const MotionGuess guess = by_imu_ ? by_imu(step, *imu) : by_constant_velocity(step, doubt_);
   if (by_filter()) doubt_.place(guess.covariance);
   return guess;
 }
 
-MotionGuess MotionModel::by_constant_velocity(const FrameStep& step) const {
+MotionDoubt MotionModel::doubt_without_imu(const FrameStep& step) const {
+  MotionDoubt doubt = doubt_before_;
+  doubt.predict(to_seconds(step.to_ns - step.from_ns), kAccelSd, kTurnAccelSd);
+  return doubt;
+}
+
+std::optional<MotionGuess> MotionModel::rival(const FrameStep& step, const MotionGuess& guess,
+                                              bool failed) const {
+  if (!by_imu_ || step.to_ns - step.from_ns > kLongestRivalNs) return std::nullopt;
+  const MotionGuess other = by_constant_velocity(step, doubt_without_imu(step));
+  const double share = failed ? kFailedShare : 1;
+  if (angle_between_rad(other.T_map_sensor, guess.T_map_sensor) < share * kRivalRad &&
+      distance_m(other.T_map_sensor, guess.T_map_sensor) < share * kRivalM)
+    return std::nullopt;
+  return other;
+}
+
+void MotionModel::take_rival(const FrameStep& step) {
+  doubt_ = doubt_without_imu(step);
+  by_imu_ = false;
+  filter_ns_ = 0;
+}
+
+MotionGuess MotionModel::by_constant_velocity(const FrameStep& step, const MotionDoubt& doubt) const {
   const double dt = to_seconds(std::min(step.to_ns - step.from_ns, kLongestStepNs));
   Pose T = Pose::Identity();
   T.linear() = step.T_odom_from.linear() * so3_exp(turn_rate_ * dt);
   T.translation() = step.T_odom_from.translation() + velocity_odom_ * dt;
-  Matrix6d covariance = doubt_.pose();
+  Matrix6d covariance = doubt.pose();
   covariance.diagonal().head<3>().array() += kStepSdRad * kStepSdRad;
   covariance.diagonal().tail<3>().array() += kStepSdM * kStepSdM;
   const MotionGuess guess(T, covariance);

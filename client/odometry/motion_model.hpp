@@ -28,6 +28,12 @@ class MotionModel {
 
   /// `imu` may be null.
   [[nodiscard]] MotionGuess guess(const FrameStep& step, const ImuTrack* imu);
+  /// The same without inertial samples, where those told something different: very much so, or enough to matter
+  /// where the guess `failed`.
+  [[nodiscard]] std::optional<MotionGuess> rival(const FrameStep& step, const MotionGuess& guess,
+                                                 bool failed) const;
+  /// The rival was right: what is learned next goes without the samples.
+  void take_rival(const FrameStep& step);
   /// The pose that was measured after `guess`, with its covariance (as MotionGuess has it): teaches the motion.
   void learn(const FrameStep& step, const MotionGuess& guess, const MotionGuess& measured);
   /// The device was found without the guess.
@@ -47,15 +53,16 @@ class MotionModel {
   [[nodiscard]] MotionGuess by_imu(const FrameStep& step, const ImuTrack& imu);
   [[nodiscard]] MotionGuess by_algorithm1(const FrameStep& step, const ImuTrack& imu);
   [[nodiscard]] MotionGuess by_preintegration(const FrameStep& step, const ImuTrack& imu);
-  [[nodiscard]] MotionGuess by_constant_velocity(const FrameStep& step) const;
+  [[nodiscard]] MotionGuess by_constant_velocity(const FrameStep& step, const MotionDoubt& doubt) const;
+  [[nodiscard]] MotionDoubt doubt_without_imu(const FrameStep& step) const;
   void start_filter(const FrameStep& step, const ImuTrack& imu);
   [[nodiscard]] bool by_filter() const { return by_imu_ && filter_; }
 
   std::optional<Pose> T_imu_sensor_;
   InertialMethod method_;
   std::optional<InertialFilter> filter_;
-  StampNs filter_ns_ = 0;  ///< to which the filter has come
-  MotionDoubt doubt_;
+  StampNs filter_ns_ = 0;             ///< to which the filter has come
+  MotionDoubt doubt_, doubt_before_;  ///< of the newest guess, and of the pose that it started from
   bool stood_still_ = false;
   bool by_imu_ = false;                                          ///< the last guess was
   Eigen::Vector3d velocity_odom_ = Eigen::Vector3d::Zero();      ///< of the sensor, m/s

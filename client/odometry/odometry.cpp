@@ -18,6 +18,7 @@ constexpr double kGyroTrustRad = 0.2;             // the gyro cannot be off by m
 // Of a pose that the scene showed along some axes only; by hand.
 constexpr double kGuessedSdM = 0.02;
 constexpr double kHeldSdRad = 0.0005, kHeldSdM = 0.001;  // of a standing device: StandingOptions::moved_m / 3
+constexpr double kRivalAhead = 0.1;  // of overlap, by which a match without the IMU has to be better; by hand
 // Frames that stood where a reference was taken, and that then tell it is left; by hand.
 constexpr int kProven = 3;
 constexpr StampNs kReferAfter = from_ms(2000);  // somebody who passes covers the view for less; by hand
@@ -94,10 +95,28 @@ std::optional<ScanMatch> Odometry::stand(const DepthImage& image, const MotionGu
   return match;
 }
 
+/// The IMU is believed where both fit alike.
+std::optional<ScanMatch> Odometry::match_rival(const DepthImage& image, const std::vector<Surfel>& frame,
+                                               const MotionGuess& rival, double evidence) const {
+  const MatchCheck check(map_, image, rival, options_);
+  auto found = match_near(frame, rival, check, image.stamp_ns);
+  if (!found || !check.consistent(*found) || !check.unhidden(*found)) return std::nullopt;
+  if (check.evidence(*found) < evidence + kRivalAhead) return std::nullopt;
+  return found;
+}
+
 std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vector<Surfel>& frame,
-                                         const MotionGuess& guess, OdometryStep& step) {
-  const MatchCheck check(map_, image, guess, options_);
-  if (auto near = match_near(frame, guess, check, image.stamp_ns)) {
+                                         const FrameStep& from, MotionGuess& guess, OdometryStep& step) {
+  MatchCheck check(map_, image, guess, options_);
+  auto near = match_near(frame, guess, check, image.stamp_ns);
+  const auto rival = motion_.rival(from, guess, !near);
+  if (rival && options_.method == LocalMethod::cloud)
+    if (auto other = match_rival(image, frame, *rival, near ? check.evidence(*near) : options_.min_overlap)) {
+      near = other;
+      guess = *rival;  // and what `check` refers to
+      motion_.take_rival(from);
+    }
+  if (near) {
     step.method = options_.method == LocalMethod::inertial ? "inertial" : "icp";
     step.doubtful = check.doubtful(*near);
     return near;
@@ -109,7 +128,7 @@ std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vec
   const double reach_m = kReachM + kReachSpeed * to_seconds(image.stamp_ns - anchored_ns_);
   for (const ScanMatch& candidate : relocate(map_, frame, image.stamp_ns, options_.seed)) {
     const double turned = angle_between_rad(candidate.T_map_sensor, guess.T_map_sensor);
-    if (options_.T_imu_sensor && turned > kGyroTrustRad) continue;
+    if (has_imu_ && turned > kGyroTrustRad) continue;
     if (distance_m(candidate.T_map_sensor, guess.T_map_sensor) > reach_m) continue;
     if (!check.consistent(candidate)) continue;
     step.method = "ransac";
@@ -160,7 +179,7 @@ void Odometry::coast(const MotionGuess& guess, const FrameStep& from, bool usabl
   step.T_odom_sensor = guess.T_map_sensor;
   tell_doubt(step);
   const StampNs blind = from.to_ns - from.anchored_ns;
-  const StampNs longest = options_.T_imu_sensor ? options_.coast_ns : options_.coast_ns / 2;
+  const StampNs longest = has_imu_ ? options_.coast_ns : options_.coast_ns / 2;
   if (blind > longest)
     motion_.halt();
   else
@@ -228,6 +247,7 @@ void Odometry::refer(const DepthImage& image, const OdometryStep& step) {
 OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,
                             ImuTrack* imu) {
   OdometryStep step;
+  has_imu_ = imu != nullptr;
   if (last_ns_ == 0) {
     step.method = "first";
     step.T_odom_sensor = T_odom_last_;
@@ -236,7 +256,7 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
     anchored_ns_ = image.stamp_ns;
   } else {
     const FrameStep from{last_ns_, image.stamp_ns, anchored_ns_, T_odom_last_};
-    const MotionGuess expected = motion_.guess(from, imu);
+    MotionGuess expected = motion_.guess(from, imu);
     // After a long time any corner may look like one of the map's.
     if (usable && map_.size() > 0 && image.stamp_ns - anchored_ns_ > options_.bridge_ns)
       start_segment(image.stamp_ns);
@@ -245,7 +265,7 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
     if (matched)
       step.method = "standing";
     else if (usable && map_.size() > 0 && options_.method != LocalMethod::dead_reckoning)
-      matched = match(image, frame, expected, step);
+      matched = match(image, frame, from, expected, step);
     if (matched)
       accept(*matched, from, expected, imu, step);
     else if (options_.method == LocalMethod::dead_reckoning)

@@ -54,7 +54,7 @@ class Odometry {
  public:
   explicit Odometry(const OdometryOptions& options);
 
-  /// `usable`: the frame may be matched (not blocked). `imu` may be null.
+  /// `usable`: the frame may be matched (not blocked). `imu` is null where there is none to believe.
   [[nodiscard]] OdometryStep step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,
                                   ImuTrack* imu);
   /// The clock of the stamps was set: a new segment starts where the last frame was.
@@ -71,9 +71,11 @@ class Odometry {
                                                     const MatchCheck& check, StampNs stamp_ns) const;
   /// At the reference's pose, where the view says that the device stands there.
   [[nodiscard]] std::optional<ScanMatch> stand(const DepthImage& image, const MotionGuess& guess);
-  /// From the guess, and by features where that fails.
+  /// From the guess, and by features where that fails. A guess that its rival beats is replaced by it.
   [[nodiscard]] std::optional<ScanMatch> match(const DepthImage& image, const std::vector<Surfel>& frame,
-                                               const MotionGuess& guess, OdometryStep& step);
+                                               const FrameStep& from, MotionGuess& guess, OdometryStep& step);
+  [[nodiscard]] std::optional<ScanMatch> match_rival(const DepthImage& image, const std::vector<Surfel>& frame,
+                                                     const MotionGuess& rival, double evidence) const;
   void accept(const ScanMatch& match, const FrameStep& from, const MotionGuess& guess, ImuTrack* imu,
               OdometryStep& step);
   /// Dead reckoning: the guess is the pose.
@@ -89,6 +91,7 @@ class Odometry {
   LocalMap map_;
   MotionModel motion_;
   StandingView standing_;
+  bool has_imu_ = false;  ///< this frame
   std::uint32_t segment_ = 0;
   StampNs last_ns_ = 0;       ///< of the last frame
   StampNs unmatched_ns_ = 0;  ///< of the first usable frame since the last match that fits nothing; 0: none

@@ -2,101 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "client/engine/tests/walker.hpp"
-#include "common/geometry/depth.hpp"
+#include "client/engine/tests/located_device.hpp"
 
 namespace liloc {
 namespace {
 
 using namespace test;
 using ::testing::HasSubstr;
-
-enum class Inputs { depth, points, imu, external };
-
-/// The walk, seen by a device whose stamps may be wrong, and a server that answers each request with the truth.
-class Device {
- public:
-  using Stamps = std::function<StampNs(StampNs)>;
-  explicit Device(Inputs inputs)
-      : inputs_(inputs), engine(options_for(inputs)), room_(scene::furnished_room(1)) {
-    imu_ = scene::imu_along(walk, mounting(), 0, 14, 200, kStart);
-  }
-
-  /// Walks on for so long. The stamps are what `frame` and `sample` make of the true ones.
-  void go(double seconds, const Stamps& frame_stamp, const Stamps& sample_stamp) {
-    for (const double end = t_ + seconds; t_ < end; t_ += 1 / kFrameHz) {
-      feed_samples(sample_stamp);
-      const StampNs stamp = kStart + from_seconds(t_);
-      DepthImage image = scene::render(room_, walk(t_), scene::small_camera(), frame_stamp(stamp), 0.004);
-      const auto frame = inputs_ == Inputs::points
-                             ? engine.add_points(image.stamp_ns, *depth_to_cloud(image, scene::small_camera()))
-                             : engine.add_depth(image);
-      frames_refused += !frame;
-      if (std::string now = engine.problem(); !now.empty()) problems += now + "\n";
-      if (!frame) continue;
-      frame_ = *frame;
-      unlocated_s = engine.tracking() == Tracking::tracking ? 0 : unlocated_s + 1 / kFrameHz;
-      longest_unlocated_s = std::max(longest_unlocated_s, unlocated_s);
-      if (frame->T_map_sensor && engine.tracking() == Tracking::tracking)
-        worst_m = std::max(worst_m, distance_m(*frame->T_map_sensor, walk(t_)));
-      answer();
-    }
-  }
-  void go(double seconds, const Stamps& stamp) { go(seconds, stamp, stamp); }
-
- private:
-  static EngineOptions options_for(Inputs inputs) {
-    EngineOptions options = engine_options();
-    if (inputs == Inputs::external) options.local = LocalMethod::external;
-    if (inputs == Inputs::imu) options.T_imu_sensor = mounting();
-    if (inputs == Inputs::imu) options.still_seconds = kStillS;
-    return options;
-  }
-  void feed_samples(const Stamps& stamp_of_sample) {
-    for (; next_ < imu_.size() && imu_[next_].stamp_ns <= kStart + from_seconds(t_); ++next_) {
-      ImuSample sample = imu_[next_];
-      const double t = to_seconds(sample.stamp_ns - kStart);
-      sample.stamp_ns = stamp_of_sample(sample.stamp_ns);
-      spoil(sample);
-      if (inputs_ == Inputs::imu) samples_refused += !engine.add_imu(sample);
-      if (inputs_ == Inputs::external)
-        samples_refused += !engine.add_odometry({sample.stamp_ns, walk(t), covariance});
-    }
-  }
-  void answer() {
-    const auto request = engine.take_request();
-    if (!request) return;
-    SpotReply reply;
-    reply.seq = request->seq;
-    reply.stamp_ns = request->stamp_ns;
-    reply.odom_segment = request->odom_segment;
-    reply.status = SpotStatus::verified;
-    reply.T_map_odom = walk(t_) * request->T_odom_sensor.inverse();
-    reply.covariance = 1e-6 * Matrix6d::Identity();
-    engine.add_reply(reply);
-  }
-
-  Inputs inputs_;
-  double t_ = 0.05;
-  std::vector<ImuSample> imu_;
-  std::size_t next_ = 0;
-
- public:
-  Engine engine;
-  FrameResult frame_;
-  std::function<void(ImuSample&)> spoil = [](ImuSample&) {};
-  std::optional<Matrix6d> covariance;
-  std::string problems;
-  int frames_refused = 0, samples_refused = 0;
-  double unlocated_s = 0, longest_unlocated_s = 0, worst_m = 0;
-
- private:
-  scene::BoxRoom room_;
-};
-
-StampNs right(StampNs stamp_ns) {
-  return stamp_ns;
-}
 
 /// Once, at the third second.
 Device::Stamps once(StampNs off_ns) {

@@ -1,0 +1,178 @@
+#include "client/inertial/imu_trust.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/base/log.hpp"
+
+namespace liloc {
+namespace {
+
+constexpr StampNs kStep = from_ms(60);          // over which rotations are compared
+constexpr StampNs kLongestStep = from_ms(400);  // beyond it integrated rates are no rotation any more
+constexpr StampNs kEvery = from_ms(1000);       // an explanation is sought
+constexpr StampNs kMostCorrected = from_ms(1000), kSameOffset = from_ms(30);
+constexpr StampNs kFar = from_ms(1000);  // no network delays the one or the other by so much
+constexpr StampNs kLongestRetry = from_ms(60'000);
+constexpr double kGravity = 9.81, kDegrees = 180 / std::numbers::pi;
+constexpr double kFactorShare = 0.15;  // by which a factor may differ from a unit's
+constexpr double kMostBias = 0.1;      // rad/s; more is no bias
+
+bool is_about(std::optional<double> factor, double unit) {
+  return factor && std::abs(*factor / unit - 1) < kFactorShare;
+}
+
+std::string apart(StampNs ahead_ns) {
+  return fmt::format("IMU stamps are {:.2f} s {} the depth's", std::abs(to_seconds(ahead_ns)),
+                     ahead_ns > 0 ? "ahead of" : "behind");
+}
+
+}  // namespace
+
+Status ImuTrust::add(const ImuSample& sample) {
+  const auto newest_ns = track_.newest_ns();
+  if (const Status ok = track_.add(sample); !ok) return ok;
+  samples_come_ = true;
+  if (track_.newest_ns() != newest_ns) record_.feel(track_.newest());
+  return {};
+}
+
+void ImuTrust::saw(StampNs stamp_ns, const std::optional<Eigen::Matrix3d>& R_odom_imu) {
+  now_ns_ = stamp_ns;
+  if (track_.newest_ns()) ahead_ns_ = *track_.newest_ns() - stamp_ns;
+  const bool come = std::exchange(samples_come_, false);
+  far_frames_ = come && far_off() ? far_frames_ + 1 : 0;
+  late_frames_ = come && ahead_ns_ < -kLargestGapNs ? late_frames_ + 1 : 0;
+  if (!R_odom_imu || (began_ns_ != 0 && stamp_ns - began_ns_ > kLongestStep)) began_ns_ = 0;
+  if (R_odom_imu && began_ns_ != 0 && stamp_ns - began_ns_ >= kStep) {
+    SeenStep step{began_ns_, stamp_ns, *R_odom_imu, Eigen::Vector3d::Zero()};
+    step.rate_rad_s = so3_log(R_odom_began_.transpose() * *R_odom_imu) / step.seconds();
+    record_.see(step);
+    began_ns_ = 0;
+  }
+  if (R_odom_imu && began_ns_ == 0) {
+    began_ns_ = stamp_ns;
+    R_odom_began_ = *R_odom_imu;
+  }
+  judge();
+}
+
+/// Live, the newest samples are of the newest frame; all that is kept lies on one side of it where they are
+/// not. Samples that are ahead lie on both after some seconds, and are as wrong.
+bool ImuTrust::far_off() const {
+  return std::abs(ahead_ns_) > kFar && (far() || !track_.surrounds(now_ns_));
+}
+
+void ImuTrust::judge() {
+  if (reason_ == Reason::none) {
+    if (gyro_agreement(record_, track_.gyro_bias_rad_s()) == Agreement::contradicts)
+      leave_out(Reason::gyro);
+    else if (force_agreement(record_) == Agreement::contradicts)
+      leave_out(Reason::force);
+  }
+  if (reason_ == Reason::none && late_frames_ == 0) return;
+  if (now_ns_ - explained_ns_ >= kEvery) explain();
+  if (reason_ != Reason::none && agrees_again()) believe_again();
+}
+
+void ImuTrust::strained() {
+  if (reason_ != Reason::none) return;
+  leave_out(Reason::strain);
+}
+
+void ImuTrust::leave_out(Reason reason) {
+  reason_ = reason;
+  left_out_ns_ = now_ns_;
+  factor_.reset();
+  explain();
+  log::warning("the IMU is left out: {}", problem());
+}
+
+/// A bias that was calibrated from numbers in another unit is none.
+Eigen::Vector3d ImuTrust::bias_rad_s() const {
+  const Eigen::Vector3d& bias = track_.gyro_bias_rad_s();
+  return bias.norm() < kMostBias ? bias : Eigen::Vector3d::Zero();
+}
+
+bool ImuTrust::agrees_again() const {
+  const Agreement gyro = gyro_agreement(record_, bias_rad_s()), force = force_agreement(record_);
+  if (gyro == Agreement::contradicts || force == Agreement::contradicts) return false;
+  if (reason_ == Reason::strain) return now_ns_ - left_out_ns_ >= retry_ns_;
+  return (reason_ == Reason::gyro ? gyro : force) == Agreement::agrees;
+}
+
+void ImuTrust::believe_again() {
+  log::info("the IMU agrees with the depth again");
+  retry_ns_ = reason_ == Reason::strain ? std::min(2 * retry_ns_, kLongestRetry) : kFirstRetry;
+  reason_ = Reason::none;
+  offset_.reset();
+  begin_anew();
+}
+
+void ImuTrust::begin_anew() {
+  const auto force = mean_force_m_s2(record_);
+  const Eigen::Vector3d up_odom = force ? force->normalized() : Eigen::Vector3d::Zero();
+  track_.begin_anew(bias_rad_s(), record_.seen().back().R_odom_imu.transpose() * up_odom);
+}
+
+/// What is found twice in a row is corrected.
+void ImuTrust::explain() {
+  explained_ns_ = now_ns_;
+  if (reason_ == Reason::gyro) factor_ = gyro_factor(record_);
+  if (reason_ == Reason::force)
+    if (const auto force = mean_force_m_s2(record_)) factor_ = force->norm() / kGravity;
+  const auto found = stamps_ahead_ns(record_);
+  if (!found) return;
+  const auto before = std::exchange(offset_, found);
+  if (!before || std::abs(*found - *before) > kSameOffset || std::abs(corrected_ns_ + *found) > kMostCorrected)
+    return;
+  corrected_ns_ += *found;
+  track_.take_off(*found);
+  record_.take_off(*found);
+  offset_.reset();
+  late_frames_ = 0;
+  log::warning("{}: corrected; stamp both by one clock", apart(corrected_ns_));
+  if (reason_ == Reason::none)
+    begin_anew();
+  else
+    believe_again();
+}
+
+void ImuTrust::frames_clock_set() {
+  record_.forget_seen();
+  began_ns_ = explained_ns_ = 0;
+  left_out_ns_ = now_ns_ = 0;
+}
+
+std::string ImuTrust::why_left_out() const {
+  if (offset_ && std::abs(corrected_ns_ + *offset_) > kMostCorrected)
+    return apart(corrected_ns_ + *offset_) + ": over 1 s is not corrected; stamp both by one clock";
+  if (reason_ == Reason::gyro && is_about(factor_, kDegrees))
+    return "the gyro sends degrees per second in place of rad/s";
+  if (reason_ == Reason::gyro && is_about(factor_, 1 / kDegrees))
+    return "the gyro's rates are 57.3 times too small: rad/s in place of degrees per second were converted";
+  if (reason_ == Reason::force && is_about(factor_, 1 / kGravity))
+    return "the accelerometer sends g in place of m/s^2";
+  if (reason_ == Reason::force && is_about(factor_, kGravity))
+    return "the accelerometer's numbers are 9.81 times too large";
+  if (reason_ == Reason::force)
+    return fmt::format(
+        "the accelerometer contradicts the depth (gravity is {:.1f} m/s^2, or turns with the device): check "
+        "its axes and T_imu_sensor",
+        kGravity * factor_.value_or(1));
+  return "depth and IMU contradict each other: check T_imu_sensor, the stamps of both and the intrinsics";
+}
+
+std::string ImuTrust::problem() const {
+  if (far()) return apart(ahead_ns_ + corrected_ns_) + ": the IMU is left out; stamp both by one clock";
+  if (reason_ != Reason::none) return why_left_out() + " (the IMU is left out)";
+  std::string late;
+  if (late_frames_ >= kFarFrames)
+    late = fmt::format("the newest IMU sample is {:.2f} s older than the frame: it cannot be used",
+                       -to_seconds(ahead_ns_));
+  if (corrected_ns_ == 0) return late.empty() ? track_.problem(now_ns_) : late;
+  return apart(corrected_ns_) + " (corrected)" + (late.empty() ? "" : "; " + late);
+}
+
+}  // namespace liloc

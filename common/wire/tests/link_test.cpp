@@ -8,6 +8,7 @@
 
 #include "common/base/log.hpp"
 #include "common/wire/client_link.hpp"
+#include "common/wire/convert.hpp"
 #include "common/wire/convert_spot.hpp"
 #include "common/wire/server_link.hpp"
 #include "common/wire/topics.hpp"

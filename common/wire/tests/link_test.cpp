@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <thread>
 
+#include "common/base/log.hpp"
 #include "common/wire/client_link.hpp"
+#include "common/wire/convert.hpp"
 #include "common/wire/convert_spot.hpp"
 #include "common/wire/server_link.hpp"
 #include "common/wire/topics.hpp"
@@ -176,6 +179,45 @@ TEST(Link, AClientThatClaimsAnotherIdIsNamedByItsPartition) {
   EXPECT_EQ(arrival->from.client_id, "mallory");
   EXPECT_EQ(arrival->request.client_id, "mallory");
   EXPECT_NE(arrival->text.find("robot1"), std::string::npos);
+}
+
+/// The lines of the log, as long as it lives.
+struct Lines {
+  Lines() {
+    log::set_sink([this](log::Level, std::string_view line) {
+      const std::scoped_lock lock(mutex);
+      lines.emplace_back(line);
+    });
+  }
+  ~Lines() { log::set_sink({}); }
+  std::size_t with(std::string_view part) {
+    const std::scoped_lock lock(mutex);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        lines, [&](const std::string& line) { return line.find(part) != std::string::npos; }));
+  }
+  std::mutex mutex;
+  std::vector<std::string> lines;
+};
+
+TEST(Link, AForgedNameReachesNoTextAsItIs) {
+  Server server(115);
+  Forger forger(115, "robots/mallory");
+  forger.send(sample_request(), [](auto& m) { copy_text(m.client_id, "a\x1b[2J\nforged"); });
+  const auto arrival = server.arrivals.take();
+  ASSERT_TRUE(arrival);
+  EXPECT_EQ(arrival->problem, Reason::identity);
+  EXPECT_EQ(arrival->text, "client_id is a?[2J forged, the sender is mallory");
+}
+
+TEST(Link, StrangersByTheDozenAreOneLine) {
+  Lines lines;
+  Server server(116);
+  std::vector<std::unique_ptr<Forger>> strange;
+  for (int i = 0; i < 12; ++i)
+    strange.push_back(std::make_unique<Forger>(116, "robots/no name " + std::to_string(i)));
+  ASSERT_TRUE(eventually([&] { return lines.with("is not in one partition") > 0; }));
+  std::this_thread::sleep_for(1s);
+  EXPECT_EQ(lines.with("is not in one partition"), 1U);
 }
 
 TEST(Link, AnotherProtocolVersionIsReported) {

@@ -88,6 +88,45 @@ TEST_F(CommandLine, DoctorTellsASilentDomainFromAHealthyServer) {
   EXPECT_THAT(heard.out, HasSubstr("ok    edge1: up for"));
 }
 
+TEST_F(CommandLine, DoctorFailsForALidarThatCannotBeUsedAndPrintsNothingForged) {
+  const auto seat = wire::Participant::create({.domain = 149, .role = wire::Role::server});
+  ASSERT_TRUE(seat) << seat.error().message;
+  const auto publisher = wire::StatusPublisher::create(*seat);
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  wire::ServerStatus status;
+  status.server_id = "edge1";
+  status.lidars = {
+      {"blind0", wire::LidarState::blind, 6, 60, 0, "", 0.001},
+      {"wide1", wire::LidarState::implausible, 6, 60, 0, "", 0.9, 24, 2.4},
+      {"late2", wire::LidarState::clock_off, 6, 60, 0, "", 0.9, 2.4, 2.4, -37},
+      {"ahead3", wire::LidarState::ok, 6, 60, 0, "", 0.9, 2.4, 2.4, 37, true},
+      {"forged\x1b[2J\nok    all is well", wire::LidarState::malformed, 6, 0, 9, "\x1b[31mstep\n"}};
+  const std::jthread server([&](const std::stop_token& stop) {
+    for (; !stop.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(50)))
+      EXPECT_TRUE(publisher->publish(status));
+  });
+  const Outcome heard = liloc("doctor --domain 149 --seconds 60");
+  EXPECT_EQ(heard.exit_code, 1) << heard.out;
+  EXPECT_THAT(heard.out, HasSubstr("FAIL  edge1: blind0 is blind, 0.1 %"));
+  EXPECT_THAT(heard.out,
+              HasSubstr("FAIL  edge1: wide1 measures implausible ranges, 24 m in the median, it used to be"));
+  EXPECT_THAT(heard.out, HasSubstr("FAIL  edge1: late2 has another clock, 37.00 s behind the site's"));
+  EXPECT_THAT(heard.out,
+              HasSubstr("warn  edge1: ahead3 has a clock 37.00 s ahead of the site's, which is corrected"));
+  EXPECT_THAT(heard.out, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(heard.out, Not(HasSubstr("\nok    all is well")));
+}
+
+TEST_F(CommandLine, ALiveSimulationThatFallsBehindLeavesImagesOutAndGoesOn) {
+  const Outcome slow = liloc(
+      "sim --live --domain 149 --seed 3 --seconds 4 --lidars 12 --lidar-rate 30 --image-width 640 "
+      "--image-height 480 "
+      "--threads 1");
+  EXPECT_EQ(slow.exit_code, 0) << slow.out;
+  EXPECT_THAT(slow.out, HasSubstr("behind real time"));
+  EXPECT_THAT(slow.out, HasSubstr("images were left out in all"));
+}
+
 TEST_F(CommandLine, ARecordingThatCannotBeReadIsExitCodeTwoAndLeavesNothing) {
   const std::string out = path("out");
   expect_complaint(liloc("replay " + path("nowhere") + " --lockstep --out " + out), 2, "nowhere");

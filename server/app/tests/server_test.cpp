@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <thread>
@@ -92,6 +93,44 @@ TEST(Server, AnswersAClientAndTellsItsStatus) {
   EXPECT_EQ(status->lidars[0].id, "ceiling0");
   EXPECT_EQ(status->lidars[0].frames, 1U);
   dispatcher->stop();
+  (*server)->stop();
+}
+
+TEST(Server, TwoOfFourClocksAheadDoNotCarryTheCeilingAway) {
+  ServerOptions options;
+  options.seat = {.domain = 163, .role = wire::Role::server};
+  options.service.server_id = options.localizer.server_id = "edge1";
+  Site site;
+  std::vector<wire::DepthPublisher> lidars;
+  const auto seat = wire::Participant::create({.domain = 163});
+  ASSERT_TRUE(seat);
+  for (const char* id : {"c0", "c1", "c2", "c3"}) {
+    site.global_lidars.push_back({id, kCamera, 10, Pose::Identity()});
+    lidars.push_back(wire::DepthPublisher::create(*seat, id, kCamera).value());
+  }
+  const auto server = Server::start(options, site);
+  ASSERT_TRUE(server) << server.error().message;
+  ASSERT_TRUE(
+      eventually([&] { return std::ranges::all_of(lidars, [](const auto& l) { return l.readers() == 1; }); }));
+  const auto corrected = [&](std::size_t i) { return (*server)->status().lidars[i].clock_corrected; };
+  StampNs now_ns = 0;
+  for (int frame = 0; frame < 100 && !(corrected(0) && corrected(1));
+       ++frame, std::this_thread::sleep_for(100ms)) {
+    now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                 std::chrono::system_clock::now().time_since_epoch())
+                 .count();
+    for (std::size_t i = 0; i < lidars.size(); ++i) {  // those ahead are heard first
+      DepthImage image{now_ns + (i < 2 ? from_seconds(37) : 0), kCamera.width, kCamera.height, {}};
+      image.units.assign(64 * 48, 3000);
+      ASSERT_TRUE(lidars[i].publish(image));
+    }
+  }
+  const auto status = (*server)->status();
+  for (const std::size_t i : {0U, 1U, 2U, 3U}) {
+    EXPECT_EQ(status.lidars[i].state, wire::LidarState::ok) << wire::name_of(status.lidars[i].state);
+    EXPECT_EQ(status.lidars[i].clock_corrected, i < 2);
+    EXPECT_NEAR(status.lidars[i].clock_offset_s, i < 2 ? 37 : 0, 0.2);
+  }
   (*server)->stop();
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "common/base/log.hpp"
 #include "common/wire/client_link.hpp"
 
 namespace liloc {
@@ -96,6 +97,35 @@ TEST(Service, ASlowLocalizerStillAnswersEveryRequestOfEveryClient) {
   (*service)->stop();
   dispatcher->stop();
   EXPECT_EQ((*service)->counters().answered, kClients * kRequests);
+}
+
+TEST(Service, AClientThatComesAndGoesCausesALineOfEachKind) {
+  std::mutex mutex;
+  int here = 0, left = 0;
+  log::set_sink([&](log::Level, std::string_view line) {
+    const std::scoped_lock lock(mutex);
+    here += line.find("is here") != std::string_view::npos;
+    left += line.find("has left") != std::string_view::npos;
+  });
+  const auto seat = wire::Participant::create({.domain = 133, .role = wire::Role::server});
+  ASSERT_TRUE(seat);
+  auto dispatcher = wire::Dispatcher::create(*seat).value();
+  auto service =
+      Service::create(*dispatcher, {.server_id = "edge1"},
+                      {.locate = [](const SpotRequest& r) { return refusal(r, Reason::confirmed, ""); }});
+  ASSERT_TRUE(service);
+  dispatcher->start();
+  for (int i = 0; i < 4; ++i) {
+    const Client client(133, "robot1");
+    EXPECT_TRUE(client.link->server_matched());
+  }
+  for (int i = 0; i < 500 && (*service)->clients() > 0; ++i) std::this_thread::sleep_for(10ms);
+  (*service)->stop();
+  dispatcher->stop();
+  log::set_sink({});
+  EXPECT_GE(here, 1);
+  EXPECT_LE(here, 2) << "one in five seconds";
+  EXPECT_LE(left, 2);
 }
 
 TEST(Service, OptionsAreChecked) {

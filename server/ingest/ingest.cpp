@@ -24,6 +24,11 @@ bool focal_differs(const Camera& a, const Camera& b) {
   return std::abs(a.fx / b.fx - 1) > 0.01 || std::abs(a.fy / b.fy - 1) > 0.01;
 }
 
+/// A cloud may have more points than the camera has pixels.
+double share_of(std::size_t returns, const Camera& camera) {
+  return std::min(1.0, static_cast<double>(returns) / (static_cast<double>(camera.width) * camera.height));
+}
+
 }  // namespace
 
 struct Ingest::Lidar {
@@ -32,6 +37,7 @@ struct Ingest::Lidar {
   wire::LidarState reported = wire::LidarState::waiting;
   bool camera_reported = false;
   StampNs newest_ns = 0;
+  double valid_share = 0;
   StampClock clock{};
 };
 
@@ -58,11 +64,14 @@ Status Ingest::subscribe(wire::Dispatcher& dispatcher, std::size_t index) {
     if (auto size = same_size(lidar, "depth image", image->width, image->height); !size)
       return drop(index, size.error().message);
     const StampNs stamp_ns = image->stamp_ns;
-    take(index, stamp_ns, sink_.add_depth(index, std::move(*image)));
+    const double valid = share_of(image->units.size() - static_cast<std::size_t>(std::ranges::count(image->units, 0)),
+                                  lidar.camera);
+    take(index, stamp_ns, valid, sink_.add_depth(index, std::move(*image)));
   };
-  const auto on_points = [this, index](const Result<wire::StampedCloud>& cloud) {
+  const auto on_points = [this, index, &lidar](const Result<wire::StampedCloud>& cloud) {
     if (!cloud) return drop(index, cloud.error().message);
-    take(index, cloud->stamp_ns, sink_.add_points(index, cloud->stamp_ns, cloud->cloud_sensor));
+    take(index, cloud->stamp_ns, share_of(cloud->cloud_sensor.size(), lidar.camera),
+         sink_.add_points(index, cloud->stamp_ns, cloud->cloud_sensor));
   };
   if (auto ok = wire::subscribe_depth(dispatcher, lidar.id, lidar.camera.depth_scale_m, on_depth); !ok)
     return ok;
@@ -71,12 +80,13 @@ Status Ingest::subscribe(wire::Dispatcher& dispatcher, std::size_t index) {
                                      [this, index](const Result<Camera>& info) { check_camera(index, info); });
 }
 
-void Ingest::take(std::size_t index, StampNs stamp_ns, const Status& taken) {
+void Ingest::take(std::size_t index, StampNs stamp_ns, double valid_share, const Status& taken) {
   if (!taken) return drop(index, taken.error().message);
   {
     const std::scoped_lock lock(mutex_);
     lidars_[index]->monitor.on_frame(Clock::now());
     lidars_[index]->newest_ns = stamp_ns;
+    lidars_[index]->valid_share = valid_share;
     if (lidars_[index]->clock.add(stamp_ns, Clock::now()))
       log::warning("{}: its clock was set to {} ns", lidars_[index]->info.id, stamp_ns);
   }
@@ -138,6 +148,14 @@ std::vector<wire::LidarHealth> Ingest::health() const {
   std::vector<wire::LidarHealth> health;
   for (const auto& lidar : lidars_) health.push_back(lidar->monitor.assess(now));
   return health;
+}
+
+std::vector<LidarActivity> Ingest::activity() const {
+  const auto now = Clock::now();
+  const std::scoped_lock lock(mutex_);
+  std::vector<LidarActivity> activity;
+  for (const auto& lidar : lidars_) activity.push_back({lidar->monitor.age_s(now), lidar->valid_share});
+  return activity;
 }
 
 StampNs Ingest::ceiling_now(Clock::time_point at) const {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/camera.hpp"
@@ -25,6 +26,12 @@ struct FrameSink {
   std::function<void()> on_frame = {};
 };
 
+/// What a LiDAR sends now.
+struct LidarActivity {
+  std::optional<double> age_s;  ///< since its newest good frame came; empty before the first
+  double valid_share = 0;       ///< of that frame's pixels: those with a return
+};
+
 class Ingest {
  public:
   /// Before the dispatcher starts; the dispatcher must be stopped before the ingest goes. The site is the
@@ -38,6 +45,8 @@ class Ingest {
 
   /// In the order of the site. Any thread.
   [[nodiscard]] std::vector<wire::LidarHealth> health() const;
+  /// In the order of the site. Any thread.
+  [[nodiscard]] std::vector<LidarActivity> activity() const;
   /// What the ceiling's clock shows: the median of the LiDARs that are heard, each by its newest stamps and the
   /// time since they came; 0 where none is. Any thread.
   [[nodiscard]] StampNs ceiling_now(std::chrono::steady_clock::time_point at) const;
@@ -49,7 +58,7 @@ class Ingest {
   explicit Ingest(FrameSink sink);
 
   [[nodiscard]] Status subscribe(wire::Dispatcher& dispatcher, std::size_t index);
-  void take(std::size_t index, StampNs stamp_ns, const Status& taken);
+  void take(std::size_t index, StampNs stamp_ns, double valid_share, const Status& taken);
   void drop(std::size_t index, const std::string& error);
   void check_camera(std::size_t index, const Result<Camera>& info);
   void report_changes();

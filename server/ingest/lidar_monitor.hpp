@@ -2,6 +2,7 @@
 // The health of one ceiling LiDAR, from when its frames come. Times are passed in: no clock in here.
 #include <chrono>
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "common/wire/status.hpp"
@@ -24,6 +25,8 @@ class LidarMonitor {
   /// late; slow: under half of the expected rate over two seconds, once it has run
   /// for as long.
   [[nodiscard]] wire::LidarHealth assess(Time now) const;
+  /// Since the newest good frame came; empty before the first.
+  [[nodiscard]] std::optional<double> age_s(Time now) const;
 
  private:
   [[nodiscard]] std::chrono::duration<double> silence_limit() const;

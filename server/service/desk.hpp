@@ -19,6 +19,8 @@ namespace liloc {
 struct ServiceCounters {
   std::uint64_t answered = 0, verified = 0, refused = 0;  ///< since the start; answered counts every reply
   std::uint32_t queued = 0;                               ///< waiting now, held ones included
+  /// Clients by the localizer's last answer; those without one are in none.
+  std::uint32_t clients_verified = 0, clients_provisional = 0, clients_refused = 0;
 };
 
 class Desk {
@@ -46,6 +48,7 @@ class Desk {
   void work();
   void enqueue(wire::Arrival arrival);
   [[nodiscard]] std::optional<wire::Arrival> take_waiting(const std::string& client_id);
+  void tell(Stage stage, std::chrono::steady_clock::time_point since) const;
   void work_on(const wire::Arrival& arrival);
   void refuse(const wire::Arrival& arrival, Reason reason, std::string text);
   void finish(const wire::Arrival& arrival, SpotReply reply);

@@ -10,6 +10,7 @@ find_package(CLI11 REQUIRED)
 find_package(PNG REQUIRED)
 find_package(TBB REQUIRED)
 find_package(draco REQUIRED)
+find_package(prometheus-cpp REQUIRED) # finds civetweb, too
 find_package(CycloneDDS 0.10.2 CONFIG REQUIRED)
 find_package(PCL 1.13 REQUIRED COMPONENTS common io kdtree search filters features registration octree)
 find_package(embree 3 REQUIRED)

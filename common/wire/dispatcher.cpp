@@ -74,6 +74,16 @@ const Participant& Dispatcher::participant() const {
   return impl_->participant;
 }
 
+std::uint64_t Dispatcher::samples_lost() const {
+  std::uint64_t lost = 0;
+  for (const Attachment& attachment : impl_->attachments)
+    for (const Entity& entity : attachment.owned) {
+      dds_sample_lost_status_t status{};  // what is no reader has none
+      if (dds_get_sample_lost_status(entity.handle(), &status) == DDS_RETCODE_OK) lost += status.total_count;
+    }
+  return lost;
+}
+
 void Dispatcher::every(std::chrono::milliseconds period, std::function<void()> task) {
   impl_->tasks.push_back({period, std::move(task), Clock::now() + period});
 }

@@ -39,6 +39,9 @@ class Dispatcher {
   void stop();
 
   [[nodiscard]] const Participant& participant() const;
+  /// Samples that DDS had to drop before this dispatcher's readers saw them, since the start. After `start`;
+  /// any thread.
+  [[nodiscard]] std::uint64_t samples_lost() const;
 
  private:
   struct Impl;

@@ -3,18 +3,20 @@
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
+#include <chrono>
 #include <exception>
 
 #include "common/base/stop_signals.hpp"
 #include "common/recording/recording.hpp"
+#include "server/app/json_line.hpp"
 #include "server/app/server.hpp"
 
 namespace liloc {
 namespace {
 
-void open_log(log::Level level) {
+void open_log(log::Level level, bool json) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("liloc-server"));
-  spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+  spdlog::set_pattern(json ? "%v" : "%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
   const auto as_spdlog = [](log::Level l) {
     switch (l) {
       case log::Level::debug:
@@ -30,7 +32,12 @@ void open_log(log::Level level) {
   };
   spdlog::set_level(as_spdlog(level));
   spdlog::flush_on(spdlog::level::debug);
-  log::set_sink([as_spdlog](log::Level l, std::string_view line) { spdlog::log(as_spdlog(l), "{}", line); });
+  log::set_sink([as_spdlog, json](log::Level l, std::string_view line) {
+    if (json)
+      spdlog::log(as_spdlog(l), "{}", json_line(std::chrono::system_clock::now(), l, line));
+    else
+      spdlog::log(as_spdlog(l), "{}", line);
+  });
 }
 
 int run(int argc, char** argv) {
@@ -41,7 +48,7 @@ int run(int argc, char** argv) {
     if (!options.error().message.empty()) fmt::print(stderr, "liloc-server: {}\n", options.error().message);
     return exit_code;
   }
-  open_log(options->log_level);
+  open_log(options->log_level, options->log_json);
   const auto site = read_site(options->site_file);
   if (!site) {
     log::error("{}", site.error().message);
@@ -55,6 +62,8 @@ int run(int argc, char** argv) {
   log::info("{} serves {} with {} LiDARs on domain {}, interface {}", options->service.server_id,
             options->site_file, site->global_lidars.size(), options->seat.domain, options->seat.interface);
   sd_notify(0, "READY=1");  // does nothing where systemd did not start it
+  if (options->metrics)
+    log::info("metrics on http://{}:{}/metrics", options->metrics->host, (*server)->metrics_port());
   log::info("signal {}: stopping", signals.wait());
   sd_notify(0, "STOPPING=1");
   (*server)->stop();

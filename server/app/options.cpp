@@ -4,6 +4,7 @@
 
 #include "common/command/checks.hpp"
 #include "common/command/program_options.hpp"
+#include "common/command/text.hpp"
 #include "server/app/site_state.hpp"
 
 namespace liloc {
@@ -12,7 +13,7 @@ namespace {
 using command::in_range;
 
 struct Raw {
-  std::string method = "liloc", verify, icp, state, log_level = "info";
+  std::string method = "liloc", verify, icp, state, log_level = "info", log_format = "text", metrics;
   int hold_ms = 100;
   bool standby = false;
 };
@@ -98,6 +99,13 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   app.add_option("--log-level", raw.log_level, "debug, info, warning or error")
       ->check(command::one_of({"debug", "info", "warning", "error"}))
       ->capture_default_str();
+  app.add_option("--log-format", raw.log_format, "text, or json: an object a line")
+      ->check(command::one_of({"text", "json"}))
+      ->capture_default_str();
+  app.add_option(
+      "--metrics", raw.metrics,
+      "PORT or ADDRESS:PORT of /metrics (Prometheus), /healthz and /readyz; PORT alone: on loopback; "
+      "default: none");
   app.add_option("--status-every", options.status_every_s, "Seconds between status lines; 0: none")
       ->check(in_range(0.0, 86'400.0))
       ->capture_default_str();
@@ -125,6 +133,12 @@ Status take(const CLI::App& app, const Raw& raw, ServerOptions& options) {
   const auto level = log::level_from(raw.log_level);
   if (!level) return fail("--log-level: {}", level.error().message);
   options.log_level = *level;
+  options.log_json = raw.log_format == "json";
+  if (!raw.metrics.empty()) {
+    const auto address = web::address_from(raw.metrics);
+    if (!address) return fail("--metrics is '{}'; {}", command::excerpt(raw.metrics), address.error().message);
+    options.metrics = *address;
+  }
   settle_standby(app, raw, options);
   if (const auto set = set_variants(raw, options.localizer); !set) return fail("--{}", set.error().message);
   options.service.hold = std::chrono::milliseconds(raw.hold_ms);

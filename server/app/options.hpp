@@ -1,11 +1,13 @@
 #pragma once
 // What `liloc-server` is told on its command line or in a file.
+#include <optional>
 #include <string>
 
 #include "common/base/log.hpp"
 #include "common/wire/participant.hpp"
 #include "server/localization/localizer.hpp"
 #include "server/service/service_options.hpp"
+#include "server/web/web_server.hpp"
 
 namespace liloc {
 
@@ -17,7 +19,9 @@ struct ServerOptions {
   LocalizerOptions localizer{.search_limit = std::chrono::seconds(2)};
   ServiceOptions service;
   log::Level log_level = log::Level::info;
-  double status_every_s = 10;  ///< a line in the log; 0: none
+  bool log_json = false;                ///< a JSON object a line, in place of text
+  std::optional<web::Address> metrics;  ///< where metrics and health are told; empty: nowhere
+  double status_every_s = 10;           ///< a line in the log; 0: none
 };
 
 /// Fills `options`; or prints help, version or what is wrong, and returns the exit code (0 or 2).

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "common/base/log.hpp"
+#include "server/web/health.hpp"
 
 namespace liloc {
 namespace {
@@ -54,6 +55,8 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site
   std::unique_ptr<Server> server(new Server(options, std::move(site)));
   if (auto opened = server->open(options); !opened) return tl::unexpected(opened.error());
   server->dispatcher_->start();
+  if (options.metrics)
+    if (auto opened = server->open_web(*options.metrics); !opened) return tl::unexpected(opened.error());
   server->preparer_ =
       std::jthread([raw = server.get()](const std::stop_token& stop) { raw->keep_prepared(stop); });
   return server;
@@ -72,6 +75,7 @@ Status Server::open(const ServerOptions& options) {
   if (auto opened = open_streams(options); !opened) return opened;
 
   dispatcher_->every(std::chrono::seconds(1), [this] {
+    beat_ = std::chrono::steady_clock::now();
     if (auto sent = status_publisher_->publish(status()); !sent) log::warning("{}", sent.error().message);
   });
   if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0)  // three words within the limit
@@ -102,10 +106,42 @@ Status Server::open_streams(const ServerOptions& options) {
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
   backend.ready = [this](StampNs stamp_ns) { return ingest_->seen(stamp_ns - GlobalCloudOptions{}.match_ns); };
   backend.ceiling_now = [this](std::chrono::steady_clock::time_point at) { return ingest_->ceiling_now(at); };
+  backend.on_stage = [this](Stage stage, double seconds) { metrics_.staged(stage, seconds); };
+  backend.on_answer = [this](const SpotReply& reply) { metrics_.answered(reply); };
   auto service = Service::create(*dispatcher_, options.service, std::move(backend));
   if (!service) return tl::unexpected(service.error());
   service_ = std::move(*service);
   return {};
+}
+
+Status Server::open_web(const web::Address& address) {
+  auto web = web::WebServer::start(
+      address, {{"/metrics",
+                 [this] {
+                   return web::Page{200, metrics_.text(facts()), "text/plain; version=0.0.4; charset=utf-8"};
+                 }},
+                {"/healthz", [this] { return web::live_page(facts()); }},
+                {"/readyz", [this] { return web::ready_page(facts()); }}});
+  if (!web) return fail("--metrics: {}", web.error().message);
+  web_ = std::move(*web);
+  return {};
+}
+
+web::ServerFacts Server::facts() const {
+  const auto now = std::chrono::steady_clock::now();
+  web::ServerFacts facts;
+  facts.server_id = server_id_;
+  facts.version = LILOC_VERSION;
+  facts.uptime_s = std::chrono::duration<double>(now - start_).count();
+  facts.network_idle_s = std::chrono::duration<double>(now - beat_.load()).count();
+  facts.clients = service_->clients();
+  facts.service = service_->counters();
+  facts.samples_lost = dispatcher_->samples_lost();
+  const auto health = ingest_->health();
+  const auto activity = ingest_->activity();
+  for (std::size_t i = 0; i < health.size(); ++i)
+    facts.lidars.push_back({health[i], activity[i].age_s, activity[i].valid_share});
+  return facts;
 }
 
 /// Builds the room's indices beside the requests, as long as there is anyone who might ask.
@@ -142,6 +178,7 @@ void Server::save_learned() {
 }
 
 void Server::stop() {
+  web_.reset();
   preparer_.request_stop();
   if (preparer_.joinable()) preparer_.join();
   if (service_) service_->stop();

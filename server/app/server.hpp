@@ -1,5 +1,6 @@
 #pragma once
 // The server put together: ceiling streams in, global cloud, localizer, clients' requests answered.
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -10,6 +11,8 @@
 #include "server/global_cloud/global_cloud.hpp"
 #include "server/ingest/ingest.hpp"
 #include "server/service/service.hpp"
+#include "server/web/metrics.hpp"
+#include "server/web/web_server.hpp"
 
 namespace liloc {
 
@@ -23,11 +26,15 @@ class Server {
   /// Refuses new requests, finishes what waits, then hears no more of DDS. Safe to call twice.
   void stop();
   [[nodiscard]] wire::ServerStatus status() const;
+  /// Of the metrics; 0 without them.
+  [[nodiscard]] int metrics_port() const { return web_ ? web_->port() : 0; }
 
  private:
   Server(const ServerOptions& options, Site site);
   [[nodiscard]] Status open(const ServerOptions& options);
   [[nodiscard]] Status open_streams(const ServerOptions& options);
+  [[nodiscard]] Status open_web(const web::Address& address);
+  [[nodiscard]] web::ServerFacts facts() const;
   void log_status() const;
   void keep_prepared(const std::stop_token& stop);
   void save_learned();
@@ -46,6 +53,9 @@ class Server {
   std::unique_ptr<Service> service_;
   std::unique_ptr<wire::Dispatcher> dispatcher_;  // its thread uses all of the above: it goes first
   std::jthread preparer_;
+  std::atomic<std::chrono::steady_clock::time_point> beat_ = start_;  ///< when the dispatcher was last at work
+  web::Metrics metrics_;
+  std::unique_ptr<web::WebServer> web_;  // its threads ask all of the above
 };
 
 }  // namespace liloc

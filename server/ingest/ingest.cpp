@@ -68,6 +68,7 @@ struct Ingest::Lidar {
   LineLimit lines{}, clock_lines{};
   bool camera_reported = false, correction_reported = false;
   StampNs newest_ns = 0;  ///< by the site's clock
+  double valid_share = 0;
 };
 
 Ingest::Ingest(FrameSink sink) : sink_(std::move(sink)) {}
@@ -123,6 +124,7 @@ void Ingest::take(std::size_t index, StampNs stamp_ns, const FrameContent& conte
   {
     const std::scoped_lock lock(mutex_);
     lidars_[index]->monitor.on_frame(now, content);
+    lidars_[index]->valid_share = content.returns;
     if (!site_stamp_ns) return;
     lidars_[index]->newest_ns = *site_stamp_ns;
   }
@@ -189,6 +191,14 @@ std::vector<wire::LidarHealth> Ingest::health() const {
   std::vector<wire::LidarHealth> health;
   for (std::size_t i = 0; i < lidars_.size(); ++i) health.push_back(assess(i, now));
   return health;
+}
+
+std::vector<LidarActivity> Ingest::activity() const {
+  const auto now = Clock::now();
+  const std::scoped_lock lock(mutex_);
+  std::vector<LidarActivity> activity;
+  for (const auto& lidar : lidars_) activity.push_back({lidar->monitor.age_s(now), lidar->valid_share});
+  return activity;
 }
 
 StampNs Ingest::ceiling_now(Clock::time_point at) const {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/camera.hpp"
@@ -28,6 +29,12 @@ struct FrameSink {
   std::function<void()> on_frame = {};
 };
 
+/// What a LiDAR sends now.
+struct LidarActivity {
+  std::optional<double> age_s;  ///< since its newest good frame came; empty before the first
+  double valid_share = 0;       ///< of that frame's pixels: those with a return
+};
+
 class Ingest {
  public:
   /// Before the dispatcher starts; the dispatcher must be stopped before the ingest goes. The site is the
@@ -41,6 +48,8 @@ class Ingest {
 
   /// In the order of the site. Any thread.
   [[nodiscard]] std::vector<wire::LidarHealth> health() const;
+  /// In the order of the site. Any thread.
+  [[nodiscard]] std::vector<LidarActivity> activity() const;
   /// What the ceiling's clock shows (`SiteClocks`), by the newest stamps and the time since they came; 0 where
   /// no LiDAR is heard. Any thread.
   [[nodiscard]] StampNs ceiling_now(std::chrono::steady_clock::time_point at) const;

@@ -83,6 +83,11 @@ void LidarMonitor::on_malformed(Time now, const std::string& error) {
   last_error_ = error.substr(0, 200);
 }
 
+std::optional<double> LidarMonitor::age_s(Time now) const {
+  if (frames_ == 0) return std::nullopt;
+  return std::chrono::duration<double>(now - last_frame_).count();
+}
+
 wire::LidarHealth LidarMonitor::assess(Time now) const {
   wire::LidarHealth health{id_, wire::LidarState::ok, 0, frames_, malformed_, last_error_};
   const auto first = std::ranges::find_if(recent_, [&](const Frame& f) { return now - f.at <= rate_window(); });

@@ -3,6 +3,7 @@
 // in here.
 #include <chrono>
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "common/wire/status.hpp"
@@ -26,6 +27,8 @@ class LidarMonitor {
   /// the last seconds in the median; slow: under half of the expected rate over two seconds, once it has run
   /// for as long.
   [[nodiscard]] wire::LidarHealth assess(Time now) const;
+  /// Since the newest good frame came; empty before the first.
+  [[nodiscard]] std::optional<double> age_s(Time now) const;
 
  private:
   struct Frame {

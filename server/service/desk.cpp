@@ -97,7 +97,15 @@ void Desk::release() {
       return true;
     });
   }
-  for (auto& arrival : due) enqueue(std::move(arrival));
+  for (auto& arrival : due) {
+    tell(Stage::hold, arrival.at);
+    enqueue(std::move(arrival));
+  }
+}
+
+void Desk::tell(Stage stage, std::chrono::steady_clock::time_point since) const {
+  if (backend_.on_stage)
+    backend_.on_stage(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
 }
 
 void Desk::work() {
@@ -119,6 +127,8 @@ void Desk::work() {
 
 void Desk::work_on(const wire::Arrival& arrival) {
   SpotReply reply;
+  tell(Stage::wait, arrival.at);
+  const auto begun = std::chrono::steady_clock::now();
   try {
     reply = backend_.locate(arrival.request);
   } catch (const std::exception& error) {  // a worker must not take the server with it
@@ -127,10 +137,11 @@ void Desk::work_on(const wire::Arrival& arrival) {
                  held_back(*held));
     reply = refusal(arrival.request, Reason::not_found, fmt::format("internal error: {}", error.what()));
   }
+  tell(Stage::work, begun);
   bool is_current = false;
   {
     const std::scoped_lock lock(mutex_);
-    sessions_.answered(arrival.from, arrival.request.seq);
+    sessions_.answered(arrival.from, arrival.request.seq, reply.status);
     is_current = sessions_.is_current(arrival.from);
   }
   // The client left or began anew meanwhile: what this request has left behind is nobody's.
@@ -161,6 +172,7 @@ void Desk::finish(const wire::Arrival& arrival, SpotReply reply) {
   ++answered_;
   if (reply.status == SpotStatus::verified) ++verified_;
   if (reply.status == SpotStatus::refused) ++refused_;
+  if (backend_.on_answer) backend_.on_answer(reply);
   answer_(arrival.from, std::move(reply));
 }
 
@@ -194,7 +206,13 @@ void Desk::stop() {
 
 ServiceCounters Desk::counters() const {
   const std::scoped_lock lock(mutex_);
-  return {answered_, verified_, refused_, static_cast<std::uint32_t>(held_.size() + line_.size())};
+  return {answered_,
+          verified_,
+          refused_,
+          static_cast<std::uint32_t>(held_.size() + line_.size()),
+          sessions_.clients(SpotStatus::verified),
+          sessions_.clients(SpotStatus::provisional),
+          sessions_.clients(SpotStatus::refused)};
 }
 
 }  // namespace liloc

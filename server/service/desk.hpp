@@ -20,6 +20,8 @@ namespace liloc {
 struct ServiceCounters {
   std::uint64_t answered = 0, verified = 0, refused = 0;  ///< since the start; answered counts every reply
   std::uint32_t queued = 0;                               ///< waiting now, held ones included
+  /// Clients by the localizer's last answer; those without one are in none.
+  std::uint32_t clients_verified = 0, clients_provisional = 0, clients_refused = 0;
 };
 
 class Desk {
@@ -47,6 +49,7 @@ class Desk {
   void work();
   void enqueue(wire::Arrival arrival);
   [[nodiscard]] std::optional<wire::Arrival> take_waiting(const std::string& client_id);
+  void tell(Stage stage, std::chrono::steady_clock::time_point since) const;
   void work_on(const wire::Arrival& arrival);
   [[nodiscard]] std::optional<std::uint64_t> may_say(const std::string& of);  ///< see SourceLimit
   void refuse(const wire::Arrival& arrival, Reason reason, std::string text);

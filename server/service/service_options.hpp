@@ -19,6 +19,10 @@ struct ServiceOptions {
   [[nodiscard]] Result<ServiceOptions> validated() const;  ///< the error names the field and its range
 };
 
+/// Where a request's time goes. hold: until the ceiling has caught up, of those that wait for it. wait: from
+/// its arrival to a worker, hold included. work: in the localizer.
+enum class Stage : std::uint8_t { hold, wait, work };
+
 /// What the service puts its requests to. `locate` runs on worker threads side by side; the others on the
 /// dispatcher's thread.
 struct ServiceBackend {
@@ -26,6 +30,9 @@ struct ServiceBackend {
   std::function<void(const std::string& client_id)> forget = {};  ///< the client left or began anew
   /// What the ceiling's clock showed at a time, 0 where nobody knows; any thread. Empty: never known.
   std::function<StampNs(std::chrono::steady_clock::time_point)> ceiling_now = {};
+  /// For metrics, from any of the service's threads: quick, and safe to call side by side. May be empty.
+  std::function<void(Stage, double seconds)> on_stage = {};
+  std::function<void(const SpotReply&)> on_answer = {};  ///< the same, before each reply leaves
   std::function<bool(StampNs stamp_ns)> ready = {};  ///< is the ceiling seen as of this stamp? empty: always
 };
 

@@ -38,9 +38,10 @@ class Sessions {
   }
   /// True if this is not the run of the client that was heard last: what is known of it holds no longer.
   [[nodiscard]] bool begins(const wire::Sender& from) {
-    auto [client, is_new] = clients_.try_emplace(from.client_id, Client{from.session, false, 0});
+    auto [client, is_new] =
+        clients_.try_emplace(from.client_id, Client{from.session, false, 0, SpotStatus::refused});
     if (is_new || client->second.session == from.session) return false;
-    client->second = {from.session, false, 0};
+    client->second = {from.session, false, 0, SpotStatus::refused};
     return true;
   }
   /// False once the client has left, or begun anew.
@@ -52,11 +53,18 @@ class Sessions {
     return is_current(from) && clients_.at(from.client_id).answered &&
            seq <= clients_.at(from.client_id).last_answered;
   }
-  void answered(const wire::Sender& from, std::uint64_t seq) {
+  void answered(const wire::Sender& from, std::uint64_t seq, SpotStatus status) {
     if (!is_current(from)) return;
     Client& client = clients_.at(from.client_id);
     client.last_answered = client.answered ? std::max(client.last_answered, seq) : seq;
     client.answered = true;
+    client.status = status;
+  }
+  /// Clients whose last answer was so.
+  [[nodiscard]] std::uint32_t clients(SpotStatus status) const {
+    return static_cast<std::uint32_t>(std::ranges::count_if(clients_, [status](const auto& entry) {
+      return entry.second.answered && entry.second.status == status;
+    }));
   }
   void forget_publication(std::uint64_t publication) { rates_.erase(publication); }
   void forget_client(const std::string& client_id) { clients_.erase(client_id); }
@@ -66,6 +74,7 @@ class Sessions {
     std::uint64_t session = 0;
     bool answered = false;
     std::uint64_t last_answered = 0;
+    SpotStatus status = SpotStatus::refused;  ///< of the last answer
   };
   double max_rate_hz_;
   std::map<std::uint64_t, RateLimit> rates_;

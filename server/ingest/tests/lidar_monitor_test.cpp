@@ -106,6 +106,14 @@ TEST(LidarMonitor, NamesWhatIsMalformedUntilAGoodFrameComes) {
   EXPECT_EQ(monitor.assess(kStart + 350ms).state, LidarState::ok);
 }
 
+TEST(LidarMonitor, KnowsHowOldItsNewestGoodFrameIs) {
+  LidarMonitor monitor("ceiling0", 10, kStart);
+  EXPECT_FALSE(monitor.age_s(kStart + 1s));
+  monitor.on_frame(kStart + 2s, kRoom);
+  monitor.on_malformed(kStart + 3s, "step");
+  EXPECT_DOUBLE_EQ(monitor.age_s(kStart + 4s).value(), 2);
+}
+
 TEST(LidarMonitor, ASlowLidarHasFivePeriodsBeforeItIsSilent) {
   LidarMonitor monitor("ceiling0", 1, kStart);
   monitor.on_frame(kStart + 1s, kRoom);

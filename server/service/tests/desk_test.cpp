@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <map>
 #include <set>
@@ -124,6 +125,49 @@ TEST(Desk, ANewerRequestOfTheSameClientTakesTheOlderOnesPlace) {
   ASSERT_TRUE(answers.wait_for(4));
   EXPECT_EQ(answers.reason("a", 3), Reason::confirmed);
   answers.expect_each_once(4);
+}
+
+TEST(Desk, TellsEachAnswerHowLongItTookWhereAndHowClientsStand) {
+  std::mutex mutex;
+  std::map<Stage, std::vector<double>> seconds;
+  std::map<Reason, int> told;
+  std::atomic<bool> ready = false;
+  Answers answers;
+  ServiceBackend backend;
+  backend.locate = [](const SpotRequest& r) {
+    std::this_thread::sleep_for(20ms);
+    return r.client_id == "a" ? verified(r) : refusal(r, Reason::not_found, "");
+  };
+  backend.ready = [&](StampNs) { return ready.load(); };
+  backend.on_stage = [&](Stage stage, double s) {
+    const std::scoped_lock lock(mutex);
+    seconds[stage].push_back(s);
+  };
+  backend.on_answer = [&](const SpotReply& reply) {
+    const std::scoped_lock lock(mutex);
+    ++told[reply.reason];
+  };
+  Desk desk({.hold = 10s}, backend, answers.sink());
+  desk.submit(arrival("a", 1));  // waits for the ceiling
+  std::this_thread::sleep_for(30ms);
+  ready = true;
+  desk.release();
+  ASSERT_TRUE(answers.wait_for(1));
+  desk.submit(arrival("b", 1));
+  ASSERT_TRUE(answers.wait_for(2));
+  desk.submit(arrival("a", 1));  // late: not the localizer's answer
+  ASSERT_TRUE(answers.wait_for(3));
+  const std::scoped_lock lock(mutex);
+  ASSERT_EQ(seconds[Stage::hold].size(), 1U);
+  EXPECT_GE(seconds[Stage::hold][0], 0.03);
+  ASSERT_EQ(seconds[Stage::wait].size(), 2U);
+  EXPECT_GE(seconds[Stage::wait][0], seconds[Stage::hold][0]);
+  ASSERT_EQ(seconds[Stage::work].size(), 2U);
+  for (const double s : seconds[Stage::work]) EXPECT_GE(s, 0.02);
+  EXPECT_EQ(told, (std::map<Reason, int>{{Reason::confirmed, 1}, {Reason::not_found, 1}, {Reason::late, 1}}));
+  EXPECT_EQ(desk.counters().clients_verified, 1U);
+  EXPECT_EQ(desk.counters().clients_refused, 1U);
+  EXPECT_EQ(desk.counters().clients_provisional, 0U);
 }
 
 TEST(Desk, ARequestNoNewerThanTheLastAnswerIsLate) {

@@ -1,0 +1,30 @@
+#include "server/web/health.hpp"
+
+#include <algorithm>
+
+namespace liloc::web {
+namespace {
+
+constexpr double kHung_s = 5;  // five beats missed
+constexpr int kOk = 200, kUnavailable = 503;
+
+bool is_heard(const LidarFacts& lidar) {
+  return lidar.health.state == wire::LidarState::ok || lidar.health.state == wire::LidarState::slow;
+}
+
+}  // namespace
+
+Page live_page(const ServerFacts& facts) {
+  if (facts.network_idle_s < kHung_s) return {kOk, "ok\n"};
+  return {kUnavailable, fmt::format("the network's thread has hung for {:.0f} s\n", facts.network_idle_s)};
+}
+
+Page ready_page(const ServerFacts& facts) {
+  if (Page live = live_page(facts); live.status != kOk) return live;
+  const auto heard = std::ranges::count_if(facts.lidars, is_heard);
+  if (heard == 0)
+    return {kUnavailable, fmt::format("none of {} ceiling LiDARs is heard\n", facts.lidars.size())};
+  return {kOk, fmt::format("{} of {} ceiling LiDARs are heard\n", heard, facts.lidars.size())};
+}
+
+}  // namespace liloc::web

@@ -91,6 +91,8 @@ struct Options {
   /// Standard deviations of the pose beyond which the state is `lost`, 0.01..100 m and 0.1..180 degrees. By
   /// default what the method's paper counts as a wrong pose.
   double lost_sd_m = 0.3, lost_sd_deg = 10;
+  /// What the frames come from, named where none arrive: a topic. Empty: the program's calls.
+  std::string frames_from;
 };
 
 /// searching: never located. tracking: located, the server answers. coasting: located once, and carried on by

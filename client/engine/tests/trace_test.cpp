@@ -174,7 +174,8 @@ TEST_F(Trace, AFullDiskIsToldAtOnceAndLeavesWholeRows) {
   EXPECT_LT(*told, 40);  // 50 bytes a row and more
   ASSERT_FALSE(closed);
   EXPECT_THAT(closed.error().message, testing::HasSubstr("File too large"));
-  EXPECT_EQ(std::count(lines("local.csv").back().begin(), lines("local.csv").back().end(), ','), 11);
+  const std::string row = lines("local.csv").back();
+  EXPECT_EQ(std::count(row.begin(), row.end(), ','), 11) << row;
   EXPECT_GT(lines("trajectory.tum").size(), 10U);
   const std::string last = lines("trajectory.tum").back();
   EXPECT_EQ(std::count(last.begin(), last.end(), ' '), 7) << last;

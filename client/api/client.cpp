@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "client/api/public_types.hpp"
+#include "client/session/connection_watch.hpp"
 #include "common/base/log.hpp"
 #include "common/wire/client_link.hpp"
 #include "common/wire/status.hpp"
@@ -30,7 +31,7 @@ void set_log(LogCallback callback) {
 /// Members go from the last to the first: the link, the dispatcher with its thread, then the session it calls.
 struct Client::Impl {
   Status connect(const Options& options);
-  void take_server(bool matched);
+  void look();
   Status stop();
 
   std::string id;
@@ -39,17 +40,14 @@ struct Client::Impl {
   ReplyCallback on_reply;
   std::atomic<bool> connected = false;
   std::unique_ptr<Session> session;
+  std::unique_ptr<ConnectionWatch> watch;
   std::optional<wire::Participant> participant;
   std::unique_ptr<wire::Dispatcher> dispatcher;
   std::unique_ptr<wire::ClientLink> link;
 };
 
-void Client::Impl::take_server(bool matched) {
-  connected = matched;
-  if (matched)
-    log::info("{}: the server is there", id);
-  else
-    log::warning("{}: the server is gone; the device goes on by itself", id);
+void Client::Impl::look() {
+  watch->look(session->stats(), connected, std::chrono::steady_clock::now());
 }
 
 Status Client::Impl::connect(const Options& options) {
@@ -68,11 +66,16 @@ Status Client::Impl::connect(const Options& options) {
   callbacks.on_reply = [this](const SpotReply& reply) {
     if (session->add_reply(reply) && on_reply) on_reply(to_public(reply));
   };
-  callbacks.on_server = [this](bool matched) { take_server(matched); };
-  callbacks.on_bad_reply = [this](const std::string& why) { log::warning("{}: reply dropped: {}", id, why); };
+  callbacks.on_server = [this](bool matched) { connected = matched; };
+  callbacks.on_bad_reply = [this](const std::string& why) { session->reply_dropped(why); };
   auto linked = wire::ClientLink::create(*dispatcher, id, std::move(callbacks));
   if (!linked) return tl::unexpected(linked.error());
   link = std::move(*linked);
+  watch = std::make_unique<ConnectionWatch>(
+      ConnectionWatch::Names{id, options.frames_from,
+                             fmt::format("domain {}, interface {}", options.domain, options.network_interface)},
+      std::chrono::steady_clock::now());
+  dispatcher->every(std::chrono::seconds(1), [this] { look(); });
   // What cannot be read of a status says nothing of the codes; replies tell of another version.
   return wire::subscribe_status(*dispatcher, [this](const Result<wire::ServerStatus>& status) {
     if (status) session->add_server(status->server_id, status->codecs);
@@ -165,8 +168,12 @@ PoseUpdate Client::newest() const {
   return none;
 }
 
+/// That nothing arrives comes first, what the frames show next, who answers last.
 Stats Client::stats() const {
-  return to_public(impl_->session->stats());
+  Stats stats = to_public(impl_->session->stats());
+  if (std::string silent = impl_->watch->no_frames(); !silent.empty()) stats.problem = std::move(silent);
+  if (stats.problem.empty()) stats.problem = impl_->watch->no_answers();
+  return stats;
 }
 
 Outcome<Taken> Client::stop() {

@@ -11,6 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr auto kFirst = 5s, kAgain = 10s;  // that the intrinsics are missing is told
+
 }  // namespace
 
 Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, const std::function<bool()>& give_up) {
@@ -50,18 +52,30 @@ Status Daemon::find_camera(const std::function<bool()>& give_up) {
   if (!dispatcher) return tl::unexpected(dispatcher.error());
   std::mutex mutex;
   std::optional<Camera> found;
-  const Status ok = wire::subscribe_camera_info_at(
-      **dispatcher, options_.topics.camera_info, [&](const Result<Camera>& camera) {
-        if (!camera) return log::warning("camera_info: {}", camera.error().message);
-        const std::scoped_lock lock(mutex);
-        found = *camera;
-      });
+  std::string wrong = fmt::format(
+      "nothing arrives on {} (domain {}, interface {}): check the topic's name, and that its driver runs "
+      "there; "
+      "--device gives the intrinsics",
+      options_.topics.camera_info, options_.client.domain, options_.client.network_interface);
+  const Status ok = wire::subscribe_camera_info_at(**dispatcher, options_.topics.camera_info,
+                                                   [&](const Result<Camera>& camera) {
+                                                     const std::scoped_lock lock(mutex);
+                                                     if (!camera) {
+                                                       wrong = "camera_info: " + camera.error().message;
+                                                       return;
+                                                     }
+                                                     found = *camera;
+                                                   });
   if (!ok) return ok;
   log::info("waiting for the intrinsics on {}; --device gives them at once", options_.topics.camera_info);
   (*dispatcher)->start();
+  auto told = std::chrono::steady_clock::now() - kAgain + kFirst;
   for (bool done = false; !done && !give_up(); std::this_thread::sleep_for(20ms)) {
     const std::scoped_lock lock(mutex);
     done = found.has_value();
+    if (done || std::chrono::steady_clock::now() - told < kAgain) continue;
+    told = std::chrono::steady_clock::now();
+    log::warning("{}", wrong);
   }
   (*dispatcher)->stop();
   if (!found) return {};
@@ -77,6 +91,8 @@ Status Daemon::open_client() {
     log::warning("{} has no IMU: --local cloud is used", options_.client.id);
     options_.client.local = client::Local::cloud;
   }
+  const SensorTopics& topics = options_.topics;
+  options_.client.frames_from = topics.use_points ? topics.points : topics.depth;
   auto made = client::Client::create(
       options_.client,
       [this](const client::PoseUpdate& update) {

@@ -1,6 +1,7 @@
 #include "client/engine/trace.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/geometry/pose_estimate.hpp"
 
@@ -8,6 +9,8 @@ namespace liloc {
 namespace {
 
 // What the files' columns are: proto-tests/replay reads them.
+constexpr StampNs kSettled = from_ms(10'000);  // answers come within seconds
+constexpr std::size_t kMostTimedOut = 64;      // later answers to older requests are ignored
 constexpr char kLocalHeader[] = "stamp_ns,informative,method,converged,latency_ms,tx,ty,tz,qx,qy,qz,qw";
 constexpr char kSpotsHeader[] =
     "stamp_ns,gpc_stamp_ns,status,verified,reason,tx,ty,tz,qx,qy,qz,qw,fitness,inlier_rmse_m,overlap,margin,"
@@ -28,17 +31,13 @@ std::string numbers(const Pose& T, char separator) {
 
 /// Seconds with nine decimals, exactly: a double would round to a quarter of a microsecond.
 std::string tum_row(StampNs stamp_ns, const Pose& T) {
-  return fmt::format("{}.{:09d} {}\n", stamp_ns / 1'000'000'000, stamp_ns % 1'000'000'000, numbers(T, ' '));
+  return fmt::format("{}.{:09d} {}", stamp_ns / 1'000'000'000, stamp_ns % 1'000'000'000, numbers(T, ' '));
 }
 
 }  // namespace
 
-Status TraceWriter::start(std::ofstream& file, const char* name, const char* header) {
-  file.open(folder_ / name, std::ios::trunc);
-  file << header << std::endl;
-  if (!file)
-    return fail("{}: cannot be written: check the folder's permissions and space", (folder_ / name).string());
-  return {};
+void TraceWriter::note(const Status& written) {
+  if (status_ && !written) status_ = fail("the trace fails: {}", written.error().message);
 }
 
 Status TraceWriter::open(const std::filesystem::path& folder) {
@@ -46,35 +45,52 @@ Status TraceWriter::open(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return fail("{}: {}: give --trace a folder that can be made", folder.string(), error.message());
-  if (auto ok = start(online_, "online.tum", kTumHeader); !ok) return ok;
-  if (auto ok = start(spots_, "spots.csv", kSpotsHeader); !ok) return ok;
-  if (auto ok = start(doubt_, "doubt.csv", kDoubtHeader); !ok) return ok;
-  return start(local_, "local.csv", kLocalHeader);
-}
-
-Status TraceWriter::healthy() const {
-  if (online_ && spots_ && local_ && doubt_) return {};
-  return fail("{}: writing the trace failed: is the disk full?", folder_.string());
+  if (auto ok = online_.open(folder_ / "online.tum", kTumHeader); !ok) return ok;
+  if (auto ok = trajectory_.open(folder_ / "trajectory.tum", kTumHeader); !ok) return ok;
+  if (auto ok = spots_.open(folder_ / "spots.csv", kSpotsHeader); !ok) return ok;
+  if (auto ok = doubt_.open(folder_ / "doubt.csv", kDoubtHeader); !ok) return ok;
+  return local_.open(folder_ / "local.csv", kLocalHeader);
 }
 
 Status TraceWriter::on_frame(const FrameResult& frame) {
-  local_ << fmt::format("{},{:d},{},{:d},{:.3f},{}", frame.stamp_ns, frame.informative, frame.method,
-                        frame.converged, frame.latency_ms, numbers(frame.T_odom_sensor, ','))
-         << std::endl;
+  if (frame.stamp_ns < last_ns_) {  // stamps of before say nothing any more
+    write_trajectory(std::numeric_limits<StampNs>::max());
+    corrections_.clear();
+  }
+  last_ns_ = frame.stamp_ns;
+  note(local_.append(fmt::format("{},{:d},{},{:d},{:.3f},{}", frame.stamp_ns, frame.informative, frame.method,
+                                 frame.converged, frame.latency_ms, numbers(frame.T_odom_sensor, ','))));
   if (frame.T_map_sensor) {
-    online_ << tum_row(frame.stamp_ns, *frame.T_map_sensor) << std::flush;
+    note(online_.append(tum_row(frame.stamp_ns, *frame.T_map_sensor)));
     if (frame.covariance) write_doubt(frame);
     frames_.push_back({frame.stamp_ns, frame.odom_segment, frame.T_odom_sensor, *frame.T_map_sensor});
   }
-  return healthy();
+  write_trajectory(frame.stamp_ns - kSettled);
+  return status_;
+}
+
+void TraceWriter::write_trajectory(StampNs until_ns) {
+  for (; !frames_.empty() && frames_.front().stamp_ns <= until_ns; frames_.pop_front())
+    note(trajectory_.append(tum_row(frames_.front().stamp_ns, corrected(frames_.front()))));
+  if (!frames_.empty()) drop_corrections(frames_.front().stamp_ns);
+}
+
+/// All but the last one before: it is mixed with the next.
+void TraceWriter::drop_corrections(StampNs before_ns) {
+  for (auto segment = corrections_.begin(); segment != corrections_.end();) {
+    auto& known = segment->second;
+    while (known.size() > 1 && known[1].stamp_ns <= before_ns) known.erase(known.begin());
+    const bool past = segment->first < frames_.front().segment && known.back().stamp_ns < before_ns;
+    segment = past ? corrections_.erase(segment) : std::next(segment);
+  }
 }
 
 void TraceWriter::write_doubt(const FrameResult& frame) {
   const PoseEstimate estimate{*frame.T_map_sensor, *frame.covariance};
-  doubt_ << fmt::format("{},{:.6f},{:.6f},", frame.stamp_ns, estimate.sd_rad(), estimate.sd_m());
+  std::string row = fmt::format("{},{:.6f},{:.6f},", frame.stamp_ns, estimate.sd_rad(), estimate.sd_m());
   for (int i = 0; i < 36; ++i)
-    doubt_ << fmt::format("{}{:.6g}", i > 0 ? " " : "", (*frame.covariance)(i / 6, i % 6));
-  doubt_ << std::endl;
+    row += fmt::format("{}{:.6g}", i > 0 ? " " : "", (*frame.covariance)(i / 6, i % 6));
+  note(doubt_.append(row));
 }
 
 void TraceWriter::on_request(const SpotRequest& request) {
@@ -89,21 +105,21 @@ void TraceWriter::on_timeout(std::uint64_t seq) {
   silence.reason = Reason::no_answer;
   write_spot(silence);
   timed_out_.insert(seq);
+  if (timed_out_.size() > kMostTimedOut) timed_out_.erase(timed_out_.begin());
   pending_.erase(it);
 }
 
 void TraceWriter::write_spot(const SpotReply& reply) {
   const bool answered = reply.reason != Reason::no_answer;
-  spots_ << fmt::format("{},{},{},{:d},{},{}", reply.stamp_ns, reply.gpc_stamp_ns, name_of(reply.status),
-                        reply.verified(), name_of(reply.reason),
-                        reply.T_map_sensor ? numbers(*reply.T_map_sensor, ',') : ",,,,,,");
+  std::string row = fmt::format("{},{},{},{:d},{},{}", reply.stamp_ns, reply.gpc_stamp_ns,
+                                name_of(reply.status), reply.verified(), name_of(reply.reason),
+                                reply.T_map_sensor ? numbers(*reply.T_map_sensor, ',') : ",,,,,,");
   if (answered)
-    spots_ << fmt::format(",{:.4f},{:.5f},{:.4f},{:.4f},{:.3f},{:.5f},{}", reply.fitness, reply.inlier_rmse_m,
-                          reply.overlap, reply.margin, reply.latency_ms, reply.confidence,
-                          name_of(reply.advice));
+    row += fmt::format(",{:.4f},{:.5f},{:.4f},{:.4f},{:.3f},{:.5f},{}", reply.fitness, reply.inlier_rmse_m,
+                       reply.overlap, reply.margin, reply.latency_ms, reply.confidence, name_of(reply.advice));
   else
-    spots_ << ",,,,,,,";
-  spots_ << std::endl;
+    row += ",,,,,,,";
+  note(spots_.append(row));
 }
 
 void TraceWriter::on_reply(const SpotReply& reply) {
@@ -133,12 +149,8 @@ Pose TraceWriter::corrected(const Located& frame) const {
 
 Status TraceWriter::close() {
   while (!pending_.empty()) on_timeout(pending_.begin()->first);
-  std::ofstream trajectory;
-  if (auto ok = start(trajectory, "trajectory.tum", kTumHeader); !ok) return ok;
-  for (const Located& frame : frames_) trajectory << tum_row(frame.stamp_ns, corrected(frame));
-  trajectory.flush();
-  if (!trajectory) return fail("{}: trajectory.tum could not be written: is the disk full?", folder_.string());
-  return healthy();
+  write_trajectory(std::numeric_limits<StampNs>::max());
+  return status_;
 }
 
 }  // namespace liloc

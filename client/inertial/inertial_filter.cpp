@@ -22,6 +22,8 @@ constexpr double kMostStrain = 2, kFullDoubt = 6, kDoubtAccel = 4, kDoubtTurn = 
 // A new IMU may send another unit: it is doubted in full at first, and no more after a second of matches (14 at
 // 15 frames a second) that bear it out; by hand.
 constexpr double kProving = 0.85, kProven = 0.1;
+// s; over longer steps nothing but the IMU leads to a match; by hand.
+constexpr double kLongestDoubted = 0.4;
 constexpr double kFade = 0.9;  // of the strain, per measurement; by hand
 // In rad/s and m/s^2: what no sensor in order has; by hand.
 constexpr double kMostGyroBias = 0.1, kMostAccelBias = 0.5;
@@ -105,8 +107,9 @@ void InertialFilter::predict(const std::vector<ImuSample>& samples) {
   P_.diagonal().segment<3>(kGyroBias).array() += kGyroWalk * kGyroWalk * t;
   P_.diagonal().segment<3>(kAccelBias).array() += kAccelWalk * kAccelWalk * t;
 
-  const double share = std::max(unproven_, std::clamp((strain() - kMostStrain) / kFullDoubt, 0.0, 1.0));
+  const double share = std::clamp((strain() - kMostStrain) / kFullDoubt, 0.0, 1.0);
   if (share > 0) doubt(t, share * kDoubtAccel, share * kDoubtTurn);
+  if (unproven_ > share && t < kLongestDoubted) doubt(t, unproven_ * kDoubtAccel, unproven_ * kDoubtTurn);
 
   state_.T_odom_imu.translation() += t * state_.velocity_m_s + 0.5 * t * t * state_.gravity_m_s2 + R * p.shift;
   state_.velocity_m_s += t * state_.gravity_m_s2 + R * p.velocity;

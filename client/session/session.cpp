@@ -171,7 +171,8 @@ void Session::Impl::process(const SensorFrame& input) {
   const Tracking tracking = engine.tracking();
   report.frame(*frame, tracking, engine.problem());
   auto request = take_request();
-  if (trace) static_cast<void>(trace->on_frame(*frame));  // close() tells of a full disk
+  if (trace)
+    if (const Status written = trace->on_frame(*frame); !written) report.trace_failed(written.error().message);
   lock.unlock();
 
   if (request) {
@@ -290,6 +291,10 @@ bool Session::add_reply(const SpotReply& reply) {
   if (impl_->trace) impl_->trace->on_reply(reply);
   impl_->report.reply(reply);
   return true;
+}
+
+void Session::reply_dropped(const std::string& why) {
+  impl_->report.reply_dropped(why);
 }
 
 std::optional<FrameResult> Session::newest_frame() const {

@@ -49,6 +49,8 @@ class Session {
   void add_server(const std::string& server_id, const std::vector<CloudCodec>& reads);
   /// Waits at most for the frame in work. False where another server's answers count (ServerChoice).
   bool add_reply(const SpotReply& reply);
+  /// One that could not be understood: counted, and told once in five seconds.
+  void reply_dropped(const std::string& why);
 
   [[nodiscard]] std::optional<FrameResult> newest_frame() const;
   [[nodiscard]] Tracking tracking() const;

@@ -89,6 +89,12 @@ void SessionReport::samples_refused(Counter what, std::uint64_t count, const std
   tell(what, why);
 }
 
+void SessionReport::trace_failed(const std::string& why) {
+  const std::scoped_lock lock(mutex_);
+  if (trace_problem_.empty()) log::error("{}: {}", client_id_, why);
+  trace_problem_ = why;
+}
+
 void SessionReport::ended() {
   const std::scoped_lock lock(mutex_);
   ended_ = true;
@@ -98,7 +104,16 @@ void SessionReport::reply(const SpotReply& reply) {
   const std::scoped_lock lock(mutex_);
   ++stats_.replies;
   stats_.replies_verified += reply.verified() ? 1 : 0;
-  stats_.replies_refused += reply.status == SpotStatus::refused ? 1 : 0;
+  const bool refused = reply.status == SpotStatus::refused;
+  stats_.replies_refused += refused ? 1 : 0;
+  stats_.refusals_in_row = refused ? stats_.refusals_in_row + 1 : 0;
+  if (refused) stats_.newest_refusal = reply.reason;
+}
+
+void SessionReport::reply_dropped(const std::string& why) {
+  const std::scoped_lock lock(mutex_);
+  ++stats_.replies_dropped;
+  tell(&SessionStats::replies_dropped, "reply dropped: " + why);
 }
 
 void SessionReport::spent(double cpu_s) {
@@ -131,6 +146,7 @@ SessionStats SessionReport::stats(Time now) const {
   if (blind(now) && refused_ == 0)
     stats.problem =
         fmt::format("no depth frames for {:.1f} s", std::chrono::duration<double>(now - seen_).count());
+  if (stats.problem.empty()) stats.problem = trace_problem_;
   if (latencies_ms_.empty()) return stats;
   const std::vector<double> latencies(latencies_ms_.begin(), latencies_ms_.end());
   stats.frame_ms_median = median(latencies);

@@ -21,7 +21,10 @@ struct SessionStats {
   std::string problem;
   std::optional<ClockOffset> clock;  ///< of the device against the ceiling
   std::uint64_t clock_jumps = 0;
-  double localized_s = 0;  ///< of the device's time, with a global pose
+  double localized_s = 0;             ///< of the device's time, with a global pose
+  std::uint64_t replies_dropped = 0;  ///< they were not to be understood
+  std::uint64_t refusals_in_row = 0;  ///< the newest replies, and why the newest was one
+  Reason newest_refusal = Reason::none;
 };
 
 /// Where a session stands and what it has done, for whoever asks; what changes for people goes to the log.
@@ -41,9 +44,12 @@ class SessionReport {
   void frame_skipped();
   /// Of `count` samples the first for this reason.
   void samples_refused(Counter what, std::uint64_t count, const std::string& why);
+  /// Told once, and a problem from then on where there is no other.
+  void trace_failed(const std::string& why);
   /// No more frames are to come, and none is missed.
   void ended();
   void reply(const SpotReply& reply);
+  void reply_dropped(const std::string& why);
   void spent(double cpu_s);
   void count(Counter what, std::uint64_t by = 1);
 
@@ -67,6 +73,7 @@ class SessionReport {
   Time seen_{};      ///< when the newest frame was taken, or left out on purpose
   int refused_ = 0;  ///< frames in a row
   bool ended_ = false;
+  std::string trace_problem_;
   std::vector<std::pair<Counter, LineLimit>> limits_;  ///< by what was refused
   std::deque<double> latencies_ms_;                    ///< of the recent frames
 };

@@ -10,7 +10,10 @@
 namespace liloc::wire {
 
 [[nodiscard]] Result<DepthImage> from_wire(const sensor_msgs_msg_dds__Image_& message, double depth_scale_m);
+/// Of the image that is sent: of the rectified one (p) where that is set, of its roi and binned.
 [[nodiscard]] Result<Camera> from_wire(const sensor_msgs_msg_dds__CameraInfo_& message);
+/// Whether the raw image is distorted: only a rectified one may be used.
+[[nodiscard]] bool distorted(const sensor_msgs_msg_dds__CameraInfo_& message);
 [[nodiscard]] Result<StampedCloud> from_wire(const sensor_msgs_msg_dds__PointCloud2_& message);
 [[nodiscard]] Result<ImuSample> from_wire(const sensor_msgs_msg_dds__Imu_& message);
 [[nodiscard]] Result<StampedOdometry> from_wire(const nav_msgs_msg_dds__Odometry_& message);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
+#include "common/base/log.hpp"
 #include "common/wire/convert_sensors.hpp"
 #include "common/wire/topics.hpp"
 #include "common/wire/typed.hpp"
@@ -44,7 +46,15 @@ Status subscribe_depth_at(Dispatcher& dispatcher, const std::string& topic, doub
 
 Status subscribe_camera_info_at(Dispatcher& dispatcher, const std::string& topic,
                                 std::function<void(Result<Camera>)> handler) {
-  return subscribe_sensor<sensor_msgs_msg_dds__CameraInfo_>(dispatcher, topic, kFrames, std::move(handler));
+  return subscribe<sensor_msgs_msg_dds__CameraInfo_>(
+      dispatcher, {}, topic, sensor_qos(kFrames),
+      [topic, told = false, handler = std::move(handler)](const auto& message, const auto&) mutable {
+        if (distorted(message) && !std::exchange(told, true))
+          log::warning(
+              "{} tells of distortion: its images are taken for rectified, with {}; use the rectified topic",
+              topic, message.p[0] != 0 ? "p as intrinsics" : "k as intrinsics, as p is not set");
+        handler(from_wire(message));
+      });
 }
 
 Status subscribe_points_at(Dispatcher& dispatcher, const std::string& topic,

@@ -337,5 +337,31 @@ TEST(Client, WrongInputIsRefusedAndCountsNothing) {
   EXPECT_TRUE(client.stop());
 }
 
+/// Within ten seconds: what is missing is told after five.
+bool comes_to_say(Client& client, const std::string& what, const std::function<void(int)>& meanwhile = {}) {
+  for (int i = 0; i < 100; ++i, std::this_thread::sleep_for(100ms)) {
+    if (meanwhile) meanwhile(i);
+    if (client.stats().problem.find(what) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(ClientAlone, NamesWhatDoesNotArrive) {
+  Options lonely = options();
+  lonely.domain = kDomain + 1;
+  lonely.frames_from = "/camera/depth";
+  auto made = Client::create(lonely);
+  ASSERT_TRUE(made) << made.error();
+  Client& client = *made.value();
+  EXPECT_TRUE(comes_to_say(client, "on /camera/depth (domain 142, interface lo)")) << client.stats().problem;
+  const auto room = scene::furnished_room(1);
+  const auto feed = [&](int i) {
+    const DepthImage image = frame_at(room, i);
+    EXPECT_TRUE(client.push_depth(image.units.data(), image.width, image.height, image.stamp_ns));
+  };
+  EXPECT_TRUE(comes_to_say(client, "no server is found (domain 142, interface lo)", feed))
+      << client.stats().problem;
+}
+
 }  // namespace
 }  // namespace liloc

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <fstream>
 
 namespace liloc {
@@ -135,6 +137,56 @@ TEST_F(Trace, ASegmentWithoutAnAnswerKeepsItsBridge) {
   ASSERT_TRUE(trace_.on_frame(frame(2, 42.0, 1)));
   ASSERT_TRUE(trace_.close());
   EXPECT_THAT(lines("trajectory.tum").at(1), StartsWith("2.000000005 42.000000 "));
+}
+
+/// Files may not grow beyond so many bytes, as on a full disk: the write that would is cut short.
+class FileLimit {
+ public:
+  explicit FileLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    signal_before_ = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    static_cast<void>(std::signal(SIGXFSZ, signal_before_));
+  }
+  FileLimit(const FileLimit&) = delete;
+  FileLimit& operator=(const FileLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*signal_before_)(int) = nullptr;
+};
+
+TEST_F(Trace, AFullDiskIsToldAtOnceAndLeavesWholeRows) {
+  ask_and_answer(1);
+  std::optional<int> told;
+  Status closed;
+  {
+    const FileLimit full(2000);
+    for (int s = 1; s <= 60; ++s)
+      if (!trace_.on_frame(frame(s, s)) && !told) told = s;
+    closed = trace_.close();
+  }
+  ASSERT_TRUE(told);
+  EXPECT_LT(*told, 40);  // 50 bytes a row and more
+  ASSERT_FALSE(closed);
+  EXPECT_THAT(closed.error().message, testing::HasSubstr("File too large"));
+  const std::string row = lines("local.csv").back();
+  EXPECT_EQ(std::count(row.begin(), row.end(), ','), 11) << row;
+  EXPECT_GT(lines("trajectory.tum").size(), 10U);
+  const std::string last = lines("trajectory.tum").back();
+  EXPECT_EQ(std::count(last.begin(), last.end(), ' '), 7) << last;
+}
+
+TEST_F(Trace, TheTrajectoryIsWrittenWhileItRuns) {
+  ask_and_answer(1);
+  for (int s = 1; s <= 60; ++s) ASSERT_TRUE(trace_.on_frame(frame(s, s)));
+  EXPECT_GE(lines("trajectory.tum").size(), 50U);
+  ASSERT_TRUE(trace_.close());
+  EXPECT_EQ(lines("trajectory.tum").size(), 61U);
 }
 
 TEST(TraceWriter, AFolderThatCannotBeMadeIsAnError) {

@@ -97,6 +97,8 @@ struct Options {
   /// default what the method's paper counts as a wrong pose.
   double lost_sd_m = 0.3, lost_sd_deg = 10;
   Codec codec = Codec::draco;
+  /// What the frames come from, named where none arrive: a topic. Empty: the program's calls.
+  std::string frames_from;
 };
 
 /// searching: never located. tracking: located, the server answers. coasting: located once, and carried on by

@@ -96,11 +96,57 @@ TEST(ConvertCameraInfo, RoundTripAndHostileFields) {
   zero.k[0] = 0;
   expect_refused(zero, "camera_info");
   auto skewed = message;
+  std::ranges::fill(skewed.p, 0);
   skewed.k[1] = 1;
   expect_refused(skewed, "k is not");
   auto wide = message;
   wide.width = 100'000;
   expect_refused(wide, "100000 x 240");
+}
+
+TEST(ConvertCameraInfo, TheRectifiedImagesIntrinsicsCountWhereTheyAreSet) {
+  auto message = to_wire(Camera{320, 240, 228.5, 230.5, 159.5, 119.5, 0.001}, 7, "lidar");
+  message.p[0] = 200;
+  message.p[2] = 150;
+  message.p[3] = -10;  // a baseline says nothing of the image
+  message.k[1] = 1;    // of the raw image
+  const auto rectified = from_wire(message);
+  ASSERT_TRUE(rectified) << rectified.error().message;
+  EXPECT_EQ(rectified->fx, 200);
+  EXPECT_EQ(rectified->cx, 150);
+  message.k[1] = 0;
+  std::ranges::fill(message.p, 0);
+  EXPECT_EQ(from_wire(message)->fx, 228.5);
+  EXPECT_FALSE(distorted(message));
+  std::array<double, 5> d{0, 0.1, 0, 0, 0};
+  message.d._buffer = d.data();
+  message.d._length = 5;
+  EXPECT_TRUE(distorted(message));
+  message.d._buffer = nullptr;
+  message.d._length = 0;
+}
+
+TEST(ConvertCameraInfo, RoiAndBinningApply) {
+  auto message = to_wire(Camera{640, 480, 460, 462, 320, 240, 0.001}, 7, "lidar");
+  message.binning_x = message.binning_y = 2;
+  const auto binned = from_wire(message);
+  ASSERT_TRUE(binned) << binned.error().message;
+  EXPECT_EQ(binned->width, 320);
+  EXPECT_EQ(binned->height, 240);
+  EXPECT_EQ(binned->fx, 230);
+  EXPECT_EQ(binned->cy, 120);
+  message.roi = {100, 40, 400, 440, true};  // x, y, height, width
+  const auto part = from_wire(message);
+  ASSERT_TRUE(part) << part.error().message;
+  EXPECT_EQ(part->width, 220);
+  EXPECT_EQ(part->height, 200);
+  EXPECT_EQ(part->cx, 110);
+  EXPECT_EQ(part->cy, 100);
+  message.roi.width = 0xFFFFFFFF;
+  expect_refused(message, "roi");
+  message.roi = {};
+  message.binning_x = 1000;
+  expect_refused(message, "binning");
 }
 
 TEST(ConvertPoints, FieldsAtAnyOffsetInAnyByteOrder) {

@@ -6,6 +6,7 @@
 
 #include "client/engine/trace.hpp"
 #include "client/session/frame_budget.hpp"
+#include "client/session/open_requests.hpp"
 #include "client/session/sample_inbox.hpp"
 #include "client/session/server_choice.hpp"
 #include "client/session/session_clock.hpp"
@@ -17,6 +18,7 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits
+constexpr auto kNamesakeTold = std::chrono::seconds(10);       // a few requests of the other device
 constexpr auto kOdometryWait = std::chrono::milliseconds(60);  // of a frame for the odometry of its stamp
 
 /// An image, or a cloud in its place.
@@ -62,6 +64,9 @@ struct Session::Impl {
   [[nodiscard]] std::optional<SpotRequest> take_request();
   void send(SpotRequest request);
   [[nodiscard]] bool follows(const SpotReply& reply);
+  [[nodiscard]] std::string namesake_problem() const {
+    return fmt::format("another device asks as {}: give each an id of its own", id());
+  }
   [[nodiscard]] const std::string& id() const { return options.engine.client_id; }
 
   const SessionOptions options;
@@ -71,8 +76,10 @@ struct Session::Impl {
   SessionReport report;
   std::atomic<bool> stopped = false;
 
-  std::mutex servers_mutex;
+  std::mutex servers_mutex;  ///< guards what follows, down to namesake_at
   ServerChoice servers;
+  OpenRequests open;
+  std::optional<SessionClock::Time> namesake_at;
 
   std::mutex engine_mutex;  ///< held for one frame or one reply
   Engine engine;
@@ -175,6 +182,10 @@ void Session::Impl::process(const SensorFrame& input) {
 
 void Session::Impl::send(SpotRequest request) {
   clock.stamp(request, now());
+  {
+    const std::scoped_lock lock(servers_mutex);
+    open.sent(request);  // before it leaves: an answer may be quicker than the return
+  }
   const Status sent = callbacks.send ? callbacks.send(request) : Status(fail("no transport"));
   if (sent) return;
   log::debug("{}: request {} not sent: {}", id(), request.seq, sent.error().message);
@@ -183,6 +194,12 @@ void Session::Impl::send(SpotRequest request) {
 
 bool Session::Impl::follows(const SpotReply& reply) {
   const std::scoped_lock lock(servers_mutex);
+  if (!open.answered_by(reply)) {
+    report.samples_refused(
+        &SessionStats::replies_strange, 1,
+        fmt::format("a reply of {} to request {}, which was not sent, is dropped", reply.server_id, reply.seq));
+    return false;
+  }
   const std::string before = servers.followed();
   if (!servers.takes(reply)) return false;
   if (!before.empty() && servers.followed() != before)
@@ -270,6 +287,13 @@ bool Session::add_reply(const SpotReply& reply) {
   return true;
 }
 
+void Session::namesake_heard() {
+  const std::scoped_lock lock(impl_->servers_mutex);
+  if (!impl_->namesake_at || now() - *impl_->namesake_at > kNamesakeTold)
+    log::warning("{}: {}", impl_->id(), impl_->namesake_problem());
+  impl_->namesake_at = now();
+}
+
 std::optional<FrameResult> Session::newest_frame() const {
   return impl_->report.newest();
 }
@@ -281,6 +305,9 @@ Tracking Session::tracking() const {
 SessionStats Session::stats() const {
   SessionStats stats = impl_->report.stats();
   stats.clock = impl_->clock.offset();
+  const std::scoped_lock lock(impl_->servers_mutex);
+  if (stats.problem.empty() && impl_->namesake_at && now() - *impl_->namesake_at < kNamesakeTold)
+    stats.problem = impl_->namesake_problem();
   return stats;
 }
 

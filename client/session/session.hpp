@@ -43,8 +43,11 @@ class Session {
   /// Handed to the engine before the next frame. Errors: no IMU in the options, not finite, stopped, the
   /// stamp as above.
   [[nodiscard]] Status push_imu(const ImuSample& sample);
-  /// Waits at most for the frame in work. False where another server's answers count (ServerChoice).
+  /// Waits at most for the frame in work. False where another server's answers count (ServerChoice), and for
+  /// one that no request of this session asked for.
   bool add_reply(const SpotReply& reply);
+  /// Another device was seen to ask under this id: told as a problem for ten seconds.
+  void namesake_heard();
 
   [[nodiscard]] std::optional<FrameResult> newest_frame() const;
   [[nodiscard]] Tracking tracking() const;

@@ -21,7 +21,8 @@ struct SessionStats {
   std::string problem;
   std::optional<ClockOffset> clock;  ///< of the device against the ceiling
   std::uint64_t clock_jumps = 0;
-  double localized_s = 0;  ///< of the device's time, with a global pose
+  double localized_s = 0;             ///< of the device's time, with a global pose
+  std::uint64_t replies_strange = 0;  ///< that nobody asked for; they count for nothing
 };
 
 /// Where a session stands and what it has done, for whoever asks; what changes for people goes to the log.

@@ -67,6 +67,7 @@ Status Client::Impl::connect(const Options& options) {
     if (session->add_reply(reply) && on_reply) on_reply(to_public(reply));
   };
   callbacks.on_server = [this](bool matched) { connected = matched; };
+  callbacks.on_namesake = [this] { session->namesake_heard(); };
   callbacks.on_bad_reply = [this](const std::string& why) { session->reply_dropped(why); };
   auto linked = wire::ClientLink::create(*dispatcher, id, std::move(callbacks));
   if (!linked) return tl::unexpected(linked.error());

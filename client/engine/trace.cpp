@@ -8,9 +8,9 @@
 namespace liloc {
 namespace {
 
+constexpr StampNs kSettled = from_ms(10'000);  // answers come within seconds; by hand
+constexpr std::size_t kMostTimedOut = 64;      // later answers to older requests are ignored; by hand
 // What the files' columns are: proto-tests/replay reads them.
-constexpr StampNs kSettled = from_ms(10'000);  // answers come within seconds
-constexpr std::size_t kMostTimedOut = 64;      // later answers to older requests are ignored
 constexpr char kLocalHeader[] = "stamp_ns,informative,method,converged,latency_ms,tx,ty,tz,qx,qy,qz,qw";
 constexpr char kSpotsHeader[] =
     "stamp_ns,gpc_stamp_ns,status,verified,reason,tx,ty,tz,qx,qy,qz,qw,fitness,inlier_rmse_m,overlap,margin,"

@@ -7,6 +7,7 @@
 #include "client/engine/trace.hpp"
 #include "client/session/codec_choice.hpp"
 #include "client/session/frame_budget.hpp"
+#include "client/session/open_requests.hpp"
 #include "client/session/sample_inbox.hpp"
 #include "client/session/server_choice.hpp"
 #include "client/session/session_clock.hpp"
@@ -18,6 +19,7 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits; by hand
+constexpr auto kNamesakeTold = std::chrono::seconds(10);  // a few requests of the other device; by hand
 // Of a frame for the odometry of its stamp; by hand.
 constexpr auto kOdometryWait = std::chrono::milliseconds(60);
 
@@ -67,6 +69,9 @@ struct Session::Impl {
   void send(SpotRequest request);
   [[nodiscard]] CloudCodec choose_codec();
   [[nodiscard]] bool follows(const SpotReply& reply);
+  [[nodiscard]] std::string namesake_problem() const {
+    return fmt::format("another device asks as {}: give each an id of its own", id());
+  }
   [[nodiscard]] const std::string& id() const { return options.engine.client_id; }
 
   const SessionOptions options;
@@ -76,10 +81,12 @@ struct Session::Impl {
   SessionReport report;
   std::atomic<bool> stopped = false;
 
-  std::mutex servers_mutex;
+  std::mutex servers_mutex;  ///< guards what follows, down to namesake_at
   ServerChoice servers;
   CodecChoice codecs;
   CloudCodec codec;  ///< of the newest requests
+  OpenRequests open;
+  std::optional<SessionClock::Time> namesake_at;
 
   std::mutex engine_mutex;  ///< held for one frame or one reply
   Engine engine;
@@ -184,6 +191,10 @@ void Session::Impl::process(const SensorFrame& input) {
 
 void Session::Impl::send(SpotRequest request) {
   clock.stamp(request, now());
+  {
+    const std::scoped_lock lock(servers_mutex);
+    open.sent(request);  // before it leaves: an answer may be quicker than the return
+  }
   const Status sent = callbacks.send ? callbacks.send(request) : Status(fail("no transport"));
   if (sent) return;
   log::debug("{}: request {} not sent: {}", id(), request.seq, sent.error().message);
@@ -201,6 +212,12 @@ CloudCodec Session::Impl::choose_codec() {
 
 bool Session::Impl::follows(const SpotReply& reply) {
   const std::scoped_lock lock(servers_mutex);
+  if (!open.answered_by(reply)) {
+    report.samples_refused(
+        &SessionStats::replies_strange, 1,
+        fmt::format("a reply of {} to request {}, which was not sent, is dropped", reply.server_id, reply.seq));
+    return false;
+  }
   const std::string before = servers.followed();
   if (!servers.takes(reply)) return false;
   if (!before.empty() && servers.followed() != before)
@@ -297,6 +314,13 @@ void Session::reply_dropped(const std::string& why) {
   impl_->report.reply_dropped(why);
 }
 
+void Session::namesake_heard() {
+  const std::scoped_lock lock(impl_->servers_mutex);
+  if (!impl_->namesake_at || now() - *impl_->namesake_at > kNamesakeTold)
+    log::warning("{}: {}", impl_->id(), impl_->namesake_problem());
+  impl_->namesake_at = now();
+}
+
 std::optional<FrameResult> Session::newest_frame() const {
   return impl_->report.newest();
 }
@@ -308,6 +332,9 @@ Tracking Session::tracking() const {
 SessionStats Session::stats() const {
   SessionStats stats = impl_->report.stats();
   stats.clock = impl_->clock.offset();
+  const std::scoped_lock lock(impl_->servers_mutex);
+  if (stats.problem.empty() && impl_->namesake_at && now() - *impl_->namesake_at < kNamesakeTold)
+    stats.problem = impl_->namesake_problem();
   return stats;
 }
 

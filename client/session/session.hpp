@@ -47,10 +47,13 @@ class Session {
   /// What a server says it reads; requests from the next frame on travel as something that it does
   /// (CodecChoice).
   void add_server(const std::string& server_id, const std::vector<CloudCodec>& reads);
-  /// Waits at most for the frame in work. False where another server's answers count (ServerChoice).
+  /// Waits at most for the frame in work. False where another server's answers count (ServerChoice), and for
+  /// one that no request of this session asked for.
   bool add_reply(const SpotReply& reply);
   /// One that could not be understood: counted, and told once in five seconds.
   void reply_dropped(const std::string& why);
+  /// Another device was seen to ask under this id: told as a problem for ten seconds.
+  void namesake_heard();
 
   [[nodiscard]] std::optional<FrameResult> newest_frame() const;
   [[nodiscard]] Tracking tracking() const;

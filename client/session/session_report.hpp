@@ -25,6 +25,7 @@ struct SessionStats {
   std::uint64_t replies_dropped = 0;  ///< they were not to be understood
   std::uint64_t refusals_in_row = 0;  ///< the newest replies, and why the newest was one
   Reason newest_refusal = Reason::none;
+  std::uint64_t replies_strange = 0;  ///< that nobody asked for; they count for nothing
 };
 
 /// Where a session stands and what it has done, for whoever asks; what changes for people goes to the log.

@@ -5,13 +5,14 @@
 
 #include "common/base/ids.hpp"
 #include "common/wire/convert_spot.hpp"
+#include "common/wire/namesake.hpp"
 #include "common/wire/topics.hpp"
 #include "common/wire/typed.hpp"
 
 namespace liloc::wire {
 
 struct ClientLink::Impl {
-  void take_reply(const liloc_msg_SpotReply& message) const;
+  void take_reply(const liloc_msg_SpotReply& message);
   void report_match();
   [[nodiscard]] bool matched() const;
 
@@ -19,7 +20,8 @@ struct ClientLink::Impl {
   std::uint64_t session = 0;
   ClientCallbacks callbacks;
   std::atomic<bool> closed = false;
-  bool reported = false;  // of the dispatcher's thread
+  bool reported = false;  // of the dispatcher's thread, as is the next
+  Namesake namesake;
   Entity publisher, subscriber, writer;
   std::int32_t reader = 0;  // the dispatcher owns it
 };
@@ -47,8 +49,13 @@ void ClientLink::Impl::report_match() {
   if (callbacks.on_server) callbacks.on_server(now);
 }
 
-void ClientLink::Impl::take_reply(const liloc_msg_SpotReply& message) const {
-  if (closed || message.session != session) return;  // kept for an earlier run of this client
+void ClientLink::Impl::take_reply(const liloc_msg_SpotReply& message) {
+  if (closed) return;
+  if (message.session != session) {  // an earlier run of this client, or another device
+    const bool lives = namesake.lives(message.session, message.seq, std::chrono::steady_clock::now());
+    if (lives && callbacks.on_namesake) callbacks.on_namesake();
+    return;
+  }
   auto reply = message.protocol_version == kProtocolVersion
                    ? from_wire(message)
                    : Result<SpotReply>(fail("server {} speaks version {}, this client {}; update the older one",

@@ -10,7 +10,8 @@ namespace {
 
 /// Of two requests of one client: a later run of the client is newer, and within a run the higher seq.
 bool is_newer(const wire::Arrival& a, const wire::Arrival& b) {
-  return a.from.session != b.from.session ? a.at > b.at : a.request.seq > b.request.seq;
+  const bool same_run = a.from.publication == b.from.publication && a.from.session == b.from.session;
+  return same_run ? a.request.seq > b.request.seq : a.at > b.at;
 }
 
 }  // namespace
@@ -29,12 +30,13 @@ Desk::~Desk() {
 }
 
 void Desk::submit(wire::Arrival arrival) {
-  bool stopping = false, begins = false, late = false;
+  bool stopping = false, begins = false, late = false, has_twin = false;
   {
     const std::scoped_lock lock(mutex_);
     stopping = stopping_;
     if (!stopping && !sessions_.admit(arrival)) arrival.problem = Reason::rate_limit;
     if (!stopping && arrival.problem == Reason::none) {
+      has_twin = sessions_.has_twin(arrival.from, arrival.at);
       begins = sessions_.begins(arrival.from);
       late = sessions_.is_late(arrival.from, arrival.request.seq);
     }
@@ -44,6 +46,9 @@ void Desk::submit(wire::Arrival arrival) {
     return refuse(arrival, Reason::rate_limit,
                   fmt::format("more than {} requests a second", options_.max_rate_hz));
   if (arrival.problem != Reason::none) return refuse(arrival, arrival.problem, arrival.text);
+  if (has_twin)
+    log::warning("two devices ask as {}: neither is located by more than one spot; give each an id of its own",
+                 arrival.from.client_id);
   if (late) return refuse(arrival, Reason::late, "a request as new as this was answered already");
   if (begins && backend_.forget) backend_.forget(arrival.from.client_id);
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "common/wire/server_link.hpp"
@@ -39,45 +40,65 @@ class Sessions {
   /// True if this is not the run of the client that was heard last: what is known of it holds no longer.
   [[nodiscard]] bool begins(const wire::Sender& from) {
     auto [client, is_new] =
-        clients_.try_emplace(from.client_id, Client{from.session, false, 0, SpotStatus::refused});
-    if (is_new || client->second.session == from.session) return false;
-    client->second = {from.session, false, 0, SpotStatus::refused};
+        clients_.try_emplace(from.client_id, Client{from.publication, from.session, {}, {}});
+    if (is_new || is_current(from)) return false;
+    client->second.publication = from.publication;
+    client->second.session = from.session;
+    client->second.status.reset();
+    return true;
+  }
+  /// True where a run that was not the last one of its client goes on: two devices have one id. To be asked
+  /// before `begins`; at most once in ten seconds for a client, so that it can be told each time.
+  [[nodiscard]] bool has_twin(const wire::Sender& from, std::chrono::steady_clock::time_point now) {
+    const auto run = runs_.find(from.publication);
+    const auto client = clients_.find(from.client_id);
+    if (run == runs_.end() || run->second.session != from.session || client == clients_.end()) return false;
+    if (is_current(from) || now < client->second.quiet_until) return false;
+    client->second.quiet_until = now + std::chrono::seconds(10);
     return true;
   }
   /// False once the client has left, or begun anew.
   [[nodiscard]] bool is_current(const wire::Sender& from) const {
     const auto client = clients_.find(from.client_id);
-    return client != clients_.end() && client->second.session == from.session;
+    return client != clients_.end() && client->second.publication == from.publication &&
+           client->second.session == from.session;
   }
+  /// By its own writer's requests alone: another's say nothing, whatever id they carry.
   [[nodiscard]] bool is_late(const wire::Sender& from, std::uint64_t seq) const {
-    return is_current(from) && clients_.at(from.client_id).answered &&
-           seq <= clients_.at(from.client_id).last_answered;
+    const auto run = runs_.find(from.publication);
+    return run != runs_.end() && run->second.session == from.session && seq <= run->second.last_answered;
   }
   void answered(const wire::Sender& from, std::uint64_t seq, SpotStatus status) {
-    if (!is_current(from)) return;
-    Client& client = clients_.at(from.client_id);
-    client.last_answered = client.answered ? std::max(client.last_answered, seq) : seq;
-    client.answered = true;
-    client.status = status;
+    if (is_current(from)) clients_.at(from.client_id).status = status;
+    if (!rates_.contains(from.publication)) return;  // it is gone
+    const auto [run, is_new] = runs_.try_emplace(from.publication, Run{from.session, seq});
+    if (is_new) return;
+    const bool same = run->second.session == from.session;
+    run->second = {from.session, same ? std::max(run->second.last_answered, seq) : seq};
   }
   /// Clients whose last answer was so.
   [[nodiscard]] std::uint32_t clients(SpotStatus status) const {
-    return static_cast<std::uint32_t>(std::ranges::count_if(clients_, [status](const auto& entry) {
-      return entry.second.answered && entry.second.status == status;
-    }));
+    return static_cast<std::uint32_t>(
+        std::ranges::count_if(clients_, [status](const auto& entry) { return entry.second.status == status; }));
   }
-  void forget_publication(std::uint64_t publication) { rates_.erase(publication); }
+  void forget_publication(std::uint64_t publication) {
+    rates_.erase(publication);
+    runs_.erase(publication);
+  }
   void forget_client(const std::string& client_id) { clients_.erase(client_id); }
 
  private:
   struct Client {
-    std::uint64_t session = 0;
-    bool answered = false;
-    std::uint64_t last_answered = 0;
-    SpotStatus status = SpotStatus::refused;  ///< of the last answer
+    std::uint64_t publication = 0, session = 0;  ///< of the run that was heard last
+    std::chrono::steady_clock::time_point quiet_until;
+    std::optional<SpotStatus> status;  ///< of the last answer
+  };
+  struct Run {
+    std::uint64_t session = 0, last_answered = 0;
   };
   double max_rate_hz_;
   std::map<std::uint64_t, RateLimit> rates_;
+  std::map<std::uint64_t, Run> runs_;  ///< by publication, once answered
   std::map<std::string, Client> clients_;
 };
 

@@ -268,5 +268,38 @@ TEST(SessionSamples, NotANumberFromTheImuIsRefusedAtOnce) {
   EXPECT_TRUE(device.session->push_imu({kStart, {0, 0, 0}, {0, 0, 9.81}}));
 }
 
+TEST(SessionReplies, WhatNobodyAskedForChangesNothing) {
+  Answered device(options());
+  device.walk_on(1);
+  ASSERT_TRUE(within(20s, [&] { return device.answered > 0; }));
+  SpotReply forged;
+  forged.server_id = "forger";
+  forged.seq = 1'000'000;  // far ahead: the server itself would be a straggler from then on
+  forged.stamp_ns = stamp_of(3);
+  forged.status = SpotStatus::verified;
+  forged.T_map_odom = Pose(Eigen::Translation3d(70, 8, 9));
+  forged.covariance = 1e-6 * Matrix6d::Identity();
+  EXPECT_FALSE(device.session->add_reply(forged));
+  forged.seq = 1;  // asked for, but of another frame
+  EXPECT_FALSE(device.session->add_reply(forged));
+  const int before = device.answered;
+  device.walk_on(20);
+  ASSERT_TRUE(within(20s, [&] { return device.answered > before; }));
+  device.walk_on(1);
+  const SessionStats stats = device.session->stats();
+  EXPECT_EQ(stats.replies_strange, 2U);
+  EXPECT_EQ(stats.replies, static_cast<std::uint64_t>(device.answered)) << "the server was left";
+  ASSERT_TRUE(device.session->newest_frame()->T_map_sensor);
+  EXPECT_NEAR(device.session->newest_frame()->T_map_sensor->translation().x(), 7, 1);
+}
+
+TEST(SessionReplies, AnotherDeviceOfTheSameIdIsToldWhileItAsks) {
+  Answered device(options());
+  device.walk_on(2);
+  EXPECT_EQ(device.session->stats().problem, "");
+  device.session->namesake_heard();
+  EXPECT_THAT(device.session->stats().problem, testing::HasSubstr("another device asks as"));
+}
+
 }  // namespace
 }  // namespace liloc

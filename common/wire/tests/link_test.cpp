@@ -10,6 +10,7 @@
 #include "common/wire/client_link.hpp"
 #include "common/wire/convert.hpp"
 #include "common/wire/convert_spot.hpp"
+#include "common/wire/namesake.hpp"
 #include "common/wire/server_link.hpp"
 #include "common/wire/topics.hpp"
 #include "common/wire/typed.hpp"
@@ -297,6 +298,50 @@ TEST(Link, ARestartedClientDoesNotHearTheRepliesToItsEarlierRun) {
   ASSERT_TRUE(server.link->reply(second->from, sample_reply(second->request)));
   EXPECT_TRUE(restarted.replies.take());
   EXPECT_FALSE(keeper.replies.take(100ms));
+}
+
+TEST(Namesake, LivesWhenItGoesOnAskingAfterWhatWasLeft) {
+  Namesake namesake;
+  const auto start = Namesake::Time{} + 1h;
+  for (std::uint64_t seq = 1; seq <= 8; ++seq)
+    EXPECT_FALSE(namesake.lives(77, seq, start + 10ms));  // kept ones
+  EXPECT_FALSE(namesake.lives(77, 8, start + 5s)) << "the same answer again, from a standby";
+  EXPECT_TRUE(namesake.lives(77, 9, start + 6s));
+  EXPECT_FALSE(namesake.lives(78, 10, start + 7s)) << "another run that may have ended";
+  EXPECT_TRUE(namesake.lives(78, 11, start + 10s));
+}
+
+TEST(Link, TwoDevicesOfOneIdAreToldToBoth) {
+  constexpr int kDomain = 127;
+  const Participant seat = Participant::create({.domain = kDomain, .role = Role::server}).value();
+  const auto dispatcher = Dispatcher::create(seat).value();
+  std::unique_ptr<ServerLink> link;
+  link = ServerLink::create(*dispatcher, {}, {.on_request = [&](const Arrival& a) {
+           static_cast<void>(link->reply(a.from, sample_reply(a.request)));
+         }}).value();
+  dispatcher->start();
+  struct Device {
+    Device()
+        : seat(Participant::create({.domain = kDomain}).value()),
+          dispatcher(Dispatcher::create(seat).value()),
+          link(ClientLink::create(*dispatcher, "robot1", {.on_namesake = [this] { ++namesakes; }}).value()) {
+      dispatcher->start();
+    }
+    ~Device() { dispatcher->stop(); }
+    std::atomic<int> namesakes = 0;
+    Participant seat;
+    std::unique_ptr<Dispatcher> dispatcher;
+    std::unique_ptr<ClientLink> link;
+  };
+  Device one, two;
+  ASSERT_TRUE(eventually([&] { return one.link->server_matched() && two.link->server_matched(); }));
+  for (std::uint64_t seq = 1; seq < 20 && (one.namesakes == 0 || two.namesakes == 0); ++seq) {
+    for (const Device* device : {&one, &two}) ASSERT_TRUE(device->link->send(sample_request("robot1", seq)));
+    std::this_thread::sleep_for(300ms);
+  }
+  EXPECT_GT(one.namesakes, 0);
+  EXPECT_GT(two.namesakes, 0);
+  dispatcher->stop();
 }
 
 TEST(Link, NoMoreClientsThanTheLimitAreServed) {

@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "common/base/log.hpp"
+
 namespace liloc {
 namespace {
 
@@ -177,6 +179,62 @@ TEST(Desk, ARequestNoNewerThanTheLastAnswerIsLate) {
   ASSERT_TRUE(answers.wait_for(1));
   desk.submit(arrival("a", 4));
   EXPECT_EQ(answers.reason("a", 4), Reason::late);
+}
+
+wire::Arrival from_writer(std::uint64_t publication, const std::string& client, std::uint64_t seq) {
+  wire::Arrival a = arrival(client, seq);
+  a.from.publication = publication;
+  return a;
+}
+
+TEST(Desk, AForeignWritersLargeSeqMakesNobodyLate) {
+  Answers answers;
+  Desk desk({}, {.locate = verified}, answers.sink());
+  desk.submit(from_writer(1, "a", 5));
+  ASSERT_TRUE(answers.wait_for(1));
+  desk.submit(from_writer(2, "a", 1'000'000));  // the same session: it was read off the wire
+  ASSERT_TRUE(answers.wait_for(2));
+  for (std::uint64_t seq = 6; seq < 9; ++seq) desk.submit(from_writer(1, "a", seq));
+  ASSERT_TRUE(answers.wait_for(5));
+  EXPECT_EQ(answers.reason("a", 8), Reason::confirmed);
+  desk.submit(from_writer(1, "a", 8));
+  EXPECT_EQ(answers.reason("a", 8), Reason::late) << "its own order still counts";
+}
+
+TEST(Desk, TwoDevicesOfOneIdAreToldInTheLog) {
+  std::vector<std::string> lines;
+  log::set_sink([&](log::Level level, std::string_view line) {
+    if (level == log::Level::warning) lines.emplace_back(line);
+  });
+  {
+    Answers answers;
+    Desk desk({}, {.locate = verified}, answers.sink());
+    for (std::uint64_t i = 0; i < 10; ++i) {
+      desk.submit(from_writer(1 + i % 2, "twin", 1 + i));
+      ASSERT_TRUE(answers.wait_for(i + 1));
+    }
+    desk.submit(arrival("other", 1));
+  }
+  log::set_sink({});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NE(lines[0].find("two devices ask as twin"), std::string::npos) << lines[0];
+}
+
+TEST(Desk, ARestartIsNoSecondDevice) {
+  std::vector<std::string> lines;
+  log::set_sink([&](log::Level level, std::string_view line) {
+    if (level == log::Level::warning) lines.emplace_back(line);
+  });
+  {
+    Answers answers;
+    Desk desk({}, {.locate = verified}, answers.sink());
+    for (std::uint64_t run = 1; run < 5; ++run) {
+      desk.submit(from_writer(run, "a", 1));
+      ASSERT_TRUE(answers.wait_for(run));
+    }
+  }
+  log::set_sink({});
+  EXPECT_TRUE(lines.empty()) << lines[0];
 }
 
 TEST(Desk, ARestartedClientBeginsAnewAndIsForgotten) {

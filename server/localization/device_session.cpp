@@ -202,6 +202,13 @@ void DeviceSession::search_beside(const std::shared_ptr<const Spot>& spot, const
   if (moved && reply->verified()) reply->reason = Reason::corrected;
 }
 
+/// What a pose in doubt needs at once can wait for spare time where nothing speaks against the pose.
+bool DeviceSession::due_for_search() const {
+  const int spots = segment_->spots_since_search;
+  return spots >= verify_.research_latest ||
+         (spots >= verify_.research_every && (!options_.idle || options_.idle()));
+}
+
 void DeviceSession::answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
                                      SpotReply* reply) {
   const Hypothesis here = follow(request, *spot);
@@ -209,8 +216,8 @@ void DeviceSession::answer_following(const SpotRequest& request, const std::shar
   int& weak_in_a_row = segment_->weak_in_a_row;
   weak_in_a_row = reply->verified() ? 0 : weak_in_a_row + 1;
   if (weak_in_a_row == 1) segment_->tracks.clear();  // what odometry tied to the place before may be lost
-  if (++segment_->spots_since_search >= verify_.research_every || weak_in_a_row >= 2)
-    search_beside(spot, here, reply);
+  ++segment_->spots_since_search;
+  if (due_for_search() || weak_in_a_row >= 2) search_beside(spot, here, reply);
   if (reply->verified()) return;
   const bool searched = segment_->spots_since_search == 0;
   advise(searched ? advice_for(evidence_, here.judgement) : advice_for(*segment_->followed, here.judgement),

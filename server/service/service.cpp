@@ -23,8 +23,7 @@ Result<std::unique_ptr<Service>> Service::create(wire::Dispatcher& dispatcher, c
            [desk](const std::string& id) {
              log::info("client {} has left", id);
              desk->client_left(id);
-           },
-       .on_gone = [desk](std::uint64_t publication) { desk->publication_gone(publication); }});
+           }});
   if (!link) return tl::unexpected(link.error());
   service->link_ = std::move(*link);
   dispatcher.every(std::chrono::milliseconds(10), [desk] { desk->release(); });

@@ -1,12 +1,13 @@
 #pragma once
-// What the service remembers of each run of a client: how often it asks, and what it was last answered.
+// What the service remembers of each client: how often it asks, and what it was last answered.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
-#include "common/wire/server_link.hpp"
+#include "server/service/waiting_line.hpp"
 
 namespace liloc {
 
@@ -28,20 +29,26 @@ class RateLimit {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// Not thread-safe: its owner locks. Bounded by the publications that DDS knows and the clients it serves.
+/// Not thread-safe: its owner locks. Bounded by the clients that are served.
 class Sessions {
  public:
   explicit Sessions(double max_rate_hz) : max_rate_hz_(max_rate_hz) {}
 
+  /// By identity: however many writers share one, they share its rate.
   [[nodiscard]] bool admit(const wire::Arrival& arrival) {
-    return rates_.try_emplace(arrival.from.publication, max_rate_hz_).first->second.admit(arrival.at);
+    return rates_.try_emplace(arrival.from.client_id, max_rate_hz_).first->second.admit(arrival.at);
   }
   /// True if this is not the run of the client that was heard last: what is known of it holds no longer.
   [[nodiscard]] bool begins(const wire::Sender& from) {
-    auto [client, is_new] = clients_.try_emplace(from.client_id, Client{from.session, false, 0});
-    if (is_new || client->second.session == from.session) return false;
-    client->second = {from.session, false, 0};
-    return true;
+    auto [client, is_new] = clients_.try_emplace(from.client_id);
+    const bool anew = !is_new && client->second.session != from.session;
+    if (is_new || anew) {
+      client->second.session = from.session;
+      client->second.answered = false;
+      client->second.tracked_segment.reset();
+    }
+    if (is_new) client->second.served = std::chrono::steady_clock::now();
+    return anew;
   }
   /// False once the client has left, or begun anew.
   [[nodiscard]] bool is_current(const wire::Sender& from) const {
@@ -52,23 +59,49 @@ class Sessions {
     return is_current(from) && clients_.at(from.client_id).answered &&
            seq <= clients_.at(from.client_id).last_answered;
   }
-  void answered(const wire::Sender& from, std::uint64_t seq) {
-    if (!is_current(from)) return;
-    Client& client = clients_.at(from.client_id);
+  void answered(const wire::Arrival& arrival, const SpotReply& reply) {
+    if (!is_current(arrival.from)) return;
+    Client& client = clients_.at(arrival.from.client_id);
+    const std::uint64_t seq = arrival.request.seq;
     client.last_answered = client.answered ? std::max(client.last_answered, seq) : seq;
     client.answered = true;
+    client.served = std::chrono::steady_clock::now();
+    client.tracked_segment.reset();
+    if (!reply.verified()) return;
+    client.known = true;
+    if (!arrival.request.cold) client.tracked_segment = arrival.request.odom_segment;
   }
-  void forget_publication(std::uint64_t publication) { rates_.erase(publication); }
-  void forget_client(const std::string& client_id) { clients_.erase(client_id); }
+  /// The request with its claim to an answer.
+  [[nodiscard]] Waiting waiting(wire::Arrival arrival) const {
+    const auto found = clients_.find(arrival.from.client_id);
+    if (found == clients_.end()) {
+      const auto at = arrival.at;
+      return {std::move(arrival), Standing::stranger, at};
+    }
+    const Client& client = found->second;
+    const bool tracked = client.tracked_segment == arrival.request.odom_segment && !arrival.request.cold;
+    return {std::move(arrival),
+            tracked        ? Standing::tracked
+            : client.known ? Standing::known
+                           : Standing::stranger,
+            client.served};
+  }
+  void forget_client(const std::string& client_id) {
+    clients_.erase(client_id);
+    rates_.erase(client_id);
+  }
 
  private:
   struct Client {
     std::uint64_t session = 0;
     bool answered = false;
     std::uint64_t last_answered = 0;
+    bool known = false;                            ///< verified once, by whichever run
+    std::optional<std::uint32_t> tracked_segment;  ///< of odometry, whose last answer was verified
+    std::chrono::steady_clock::time_point served{};
   };
   double max_rate_hz_;
-  std::map<std::uint64_t, RateLimit> rates_;
+  std::map<std::string, RateLimit> rates_;
   std::map<std::string, Client> clients_;
 };
 

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 RequestRow row(Outcome outcome, double latency_ms = 10, double lag_ms = 0.1) {
-  return {.planned_s = 10, .lag_ms = lag_ms, .latency_ms = latency_ms, .outcome = outcome};
+  return {10, lag_ms, latency_ms, outcome, false, false};
 }
 
 TEST(LoadReport, EveryOutcomeIsCounted) {
@@ -64,8 +64,14 @@ TEST(LoadReport, ARunWithoutAServerIsVoid) {
 }
 
 TEST(LoadReport, DevicesThatLostTheirWayAreCountedApart) {
-  Outcomes outcomes{{row(Outcome::verified)},
-                    {{10, 9}, {10, 8, 3}, {10, 3, std::numeric_limits<double>::infinity()}}};
+  Outcomes outcomes{{row(Outcome::verified)}, {}};
+  for (const auto& [available_s, recovered_s] :
+       {std::pair{9.0, -1.0}, {8.0, 3.0}, {3.0, std::numeric_limits<double>::infinity()}}) {
+    DeviceRow& device = outcomes.devices.emplace_back();
+    device.present_s = 10;
+    device.available_s = available_s;
+    device.recovered_s = recovered_s;
+  }
   outcomes.requests.push_back(row(Outcome::verified, 900));
   outcomes.requests.back().of_lost = true;
   const LoadReport r = summarize(3, 10, outcomes);
@@ -96,8 +102,11 @@ TEST(LoadReport, TheFileHoldsOneObjectOrAnArray) {
 
 TEST(LoadPlot, TheKneeIsWhereLatencyOrAvailabilityGive) {
   std::vector<LoadReport> reports(3);
-  for (int i = 0; i < 3; ++i)
-    reports[static_cast<std::size_t>(i)] = {.clients = 10 << i, .availability = 1, .p99_ms = 100};
+  for (std::size_t i = 0; i < 3; ++i) {
+    reports[i].clients = 10 << i;
+    reports[i].availability = 1;
+    reports[i].p99_ms = 100;
+  }
   EXPECT_FALSE(knee_of(reports, 800));
   EXPECT_THAT(plot_svg(reports, 800), Not(HasSubstr("knee")));
   reports[2].p99_ms = 900;

@@ -25,6 +25,7 @@ class Child {
   ~Child();
 
   [[nodiscard]] bool running();
+  [[nodiscard]] pid_t pid() const { return pid_; }
   /// SIGTERM, then SIGKILL once `grace` is over. Error: the child failed, was killed, or had ended before with
   /// an error; its last log lines are in the message.
   Status stop(std::chrono::milliseconds grace = std::chrono::seconds(5));

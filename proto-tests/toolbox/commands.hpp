@@ -7,5 +7,6 @@ namespace liloc::toolbox {
 void add_replay(CLI::App& app, int& exit_code);
 void add_sim(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
+void add_load(CLI::App& app, int& exit_code);
 
 }  // namespace liloc::toolbox

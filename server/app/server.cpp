@@ -32,6 +32,12 @@ bool much_the_same(const std::vector<DepthNoise>& a, const std::vector<DepthNois
          });
 }
 
+/// `idle` is asked by those who work on a request, so that there is a service.
+LocalizerOptions with_idle(LocalizerOptions options, std::function<bool()> idle) {
+  options.idle = std::move(idle);
+  return options;
+}
+
 }  // namespace
 
 Server::Server(const ServerOptions& options, Site site)
@@ -41,7 +47,8 @@ Server::Server(const ServerOptions& options, Site site)
       state_(options.state_file.empty()
                  ? SiteState{}
                  : open_site_state(options.state_file, global_cloud_.site(), voxel_size_m_)),
-      localizer_(global_cloud_, options.localizer, state_.learned) {
+      localizer_(global_cloud_, with_idle(options.localizer, [this] { return service_->idle(); }),
+                 state_.learned) {
   saved_ = localizer_.learned();
   global_cloud_.set_known_noise(state_.noise);
   saved_noise_ = state_.noise;

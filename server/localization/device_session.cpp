@@ -222,6 +222,13 @@ DeviceSession::Found DeviceSession::search_beside(const std::shared_ptr<const Sp
   return found;
 }
 
+/// What a pose in doubt needs at once can wait for spare time where nothing speaks against the pose.
+bool DeviceSession::due_for_search() const {
+  const int spots = segment_->spots_since_search;
+  return spots >= verify_.research_latest ||
+         (spots >= verify_.research_every && (!options_.idle || options_.idle()));
+}
+
 Evidence DeviceSession::answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
                                          SpotReply* reply) {
   const Hypothesis here = follow(request, *spot);
@@ -230,8 +237,8 @@ Evidence DeviceSession::answer_following(const SpotRequest& request, const std::
   weak_in_a_row = reply->verified() ? 0 : weak_in_a_row + 1;
   if (weak_in_a_row == 1) segment_->tracks.clear();  // what odometry tied to the place before may be lost
   std::optional<Found> found;
-  if (++segment_->spots_since_search >= verify_.research_every || weak_in_a_row >= 2)
-    found = search_beside(spot, here, reply);
+  ++segment_->spots_since_search;
+  if (due_for_search() || weak_in_a_row >= 2) found = search_beside(spot, here, reply);
   if (!reply->verified()) {
     const bool searched = found && found->outcome != Found::Outcome::cut_off;
     advise(searched ? advice_for(found->evidence, here.judgement)

@@ -53,6 +53,7 @@ class DeviceSession {
                     const Hypothesis* followed = nullptr);
   Hypothesis follow(const SpotRequest& request, const Spot& spot);
   Found search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here, SpotReply* reply);
+  [[nodiscard]] bool due_for_search() const;
   void report_followed(const Hypothesis& here, SpotReply* reply) const;
   [[nodiscard]] bool enough(double confidence) const { return confidence >= least_confidence(verify_.risk); }
 

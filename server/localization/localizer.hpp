@@ -2,6 +2,7 @@
 // From a request and the room to an answer: propose, judge, verify. No I/O.
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ struct LocalizerOptions {
   /// A search of the room may take so long, then the request is refused: what was not searched may look like
   /// what was. Without a limit answers do not depend on load.
   std::chrono::steady_clock::duration search_limit = GravitySearchOptions{}.time_limit;
+  /// Whether there is time for work that nobody waits for, asked by a worker; empty: always.
+  std::function<bool()> idle = {};
 
   [[nodiscard]] Verify verify_or_default() const;
   [[nodiscard]] Icp icp_or_default() const;

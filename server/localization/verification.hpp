@@ -16,7 +16,8 @@ struct VerifyOptions {
   double prior_residual_sd_m = 0.05;                        ///< of a pair of it
   double step_sd_rad = radians(0.2),
          step_sd_m = 0.008;  ///< least growth between spots: calibration and clocks err too
-  int research_every = 6;    ///< while following, every so many spots the whole room is searched
+  int research_every = 6;    ///< while following, every so many spots the whole room is searched ...
+  int research_latest = 24;  ///< ... or, while others wait for the processor, every so many
 };
 
 /// What an answer's confidence must be. Most verified answers are far surer than the least sure one, so that

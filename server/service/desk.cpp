@@ -81,7 +81,7 @@ void Desk::enqueue(wire::Arrival arrival) {
   {
     const std::scoped_lock lock(mutex_);
     stopping = stopping_;
-    displaced = stopping ? std::move(arrival) : line_.push(std::move(arrival));
+    displaced = stopping ? std::move(arrival) : line_.push(sessions_.waiting(std::move(arrival)));
   }
   may_begin_.notify_one();
   if (!displaced) return;
@@ -116,16 +116,17 @@ void Desk::tell(Stage stage, std::chrono::steady_clock::time_point since) const 
 void Desk::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    std::optional<wire::Arrival> arrival;
+    std::optional<Waiting> begun;
     may_begin_.wait(lock, [&] {
-      arrival = line_.begin();
-      return arrival || (stopping_ && line_.empty());
+      begun = line_.begin();
+      return begun || (stopping_ && line_.empty());
     });
-    if (!arrival) return;
+    if (!begun) return;
     lock.unlock();
-    work_on(*arrival);
+    const auto start = std::chrono::steady_clock::now();
+    work_on(begun->arrival);
     lock.lock();
-    line_.end(arrival->from.client_id);
+    line_.end(*begun, std::chrono::steady_clock::now() - start);
     may_begin_.notify_all();
   }
 }
@@ -146,7 +147,7 @@ void Desk::work_on(const wire::Arrival& arrival) {
   bool is_current = false;
   {
     const std::scoped_lock lock(mutex_);
-    sessions_.answered(arrival.from, arrival.request.seq, reply.status);
+    sessions_.answered(arrival, reply);
     is_current = sessions_.is_current(arrival.from);
   }
   // The client left or began anew meanwhile: what this request has left behind is nobody's.
@@ -190,9 +191,9 @@ void Desk::client_left(const std::string& client_id) {
   if (backend_.forget) backend_.forget(client_id);
 }
 
-void Desk::publication_gone(std::uint64_t publication) {
+bool Desk::idle() const {
   const std::scoped_lock lock(mutex_);
-  sessions_.forget_publication(publication);
+  return line_.empty();
 }
 
 void Desk::stop() {
@@ -201,7 +202,7 @@ void Desk::stop() {
     const std::scoped_lock lock(mutex_);
     stopping_ = true;
     for (wire::Arrival& held : std::exchange(held_, {}))
-      if (auto oldest = line_.push(std::move(held))) displaced.push_back(std::move(*oldest));
+      if (auto least = line_.push(sessions_.waiting(std::move(held)))) displaced.push_back(std::move(*least));
   }
   may_begin_.notify_all();
   for (const auto& arrival : displaced) refuse(arrival, Reason::shutting_down, "the server stops");

@@ -39,11 +39,12 @@ class Desk {
   /// Sends on the held requests whose time has come: that are ready, or have waited long enough. Any thread.
   void release();
   void client_left(const std::string& client_id);
-  void publication_gone(std::uint64_t publication);
   /// Refuses new requests, finishes what waits, joins the workers. Safe to call twice.
   void stop();
 
   [[nodiscard]] ServiceCounters counters() const;
+  /// Nobody waits for a worker: there is time for work that nobody asked for. Any thread, also a worker.
+  [[nodiscard]] bool idle() const;
 
  private:
   void work();

@@ -28,6 +28,8 @@ class Service {
   void stop() { desk_.stop(); }
 
   [[nodiscard]] ServiceCounters counters() const { return desk_.counters(); }
+  /// Nobody waits for a worker. Any thread.
+  [[nodiscard]] bool idle() const { return desk_.idle(); }
   [[nodiscard]] std::size_t clients() const { return link_->clients(); }
 
  private:

@@ -11,10 +11,10 @@ namespace liloc {
 /// Defaults are by hand where nothing else is said.
 struct ServiceOptions {
   std::string server_id = "liloc";
-  int workers = 1;                      ///< requests worked on at once; 1..64
-  std::size_t queue = 64;               ///< requests waiting; 1..4096. When it is full the oldest is refused
-  double max_rate_hz = 20;              ///< per run of a client; a burst of one second's worth passes
-  std::size_t max_clients = 512;        ///< 1..4096
+  int workers = 1;                ///< requests worked on at once; 1..64
+  std::size_t queue = 64;         ///< requests waiting; 1..4096. When it is full strangers are refused first
+  double max_rate_hz = 20;        ///< per identity; a burst of one second's worth passes
+  std::size_t max_clients = 512;  ///< 1..4096
   std::chrono::milliseconds hold{100};  ///< how long a request waits for the ceiling to catch up; 0: never
   [[nodiscard]] Result<ServiceOptions> validated() const;  ///< the error names the field and its range
 };

@@ -119,5 +119,26 @@ TEST_F(Live, TheDemoLocatesItsDevices) {
   EXPECT_THAT(end, HasSubstr("device1"));
 }
 
+// Requests leave at their planned times whatever the server does, so that a server that stands still shows.
+TEST_F(Live, LoadShowsAServerThatStandsStill) {
+  const fs::path out = rec_.parent_path() / "load";
+  auto load = start({"load", out, "--clients", "4", "--seconds", "14", "--paths", "1", "--path-seconds", "6",
+                     "--freeze", "5"});
+  ASSERT_TRUE(load) << load.error().message;
+  wait(*load, seconds(150));
+  ASSERT_FALSE(load->running());
+  const auto json = nlohmann::json::parse(std::ifstream(out / "load.json"), nullptr, false);
+  ASSERT_FALSE(json.is_discarded()) << replay::last_lines(log_, 5);
+  EXPECT_EQ(json.at("clients"), 4);
+  const auto& requests = json.at("requests");
+  EXPECT_GE(requests.at("sent"), 4 * 14) << "at the latest every 800 ms, and more often while searching";
+  EXPECT_EQ(requests.at("planned"), requests.at("sent"));
+  EXPECT_GT(json.at("latency_ms").at("p95"), 3000);
+  EXPECT_GT(json.at("server").at("cpu_s"), 0);
+  EXPECT_GT(json.at("server").at("rx_mb"), json.at("server").at("tx_mb"));
+  EXPECT_TRUE(fs::exists(out / "load.svg"));
+  EXPECT_THAT(processes_with(out), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace liloc::toolbox

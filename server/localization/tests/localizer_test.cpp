@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "server/localization/tests/world.hpp"
+#include "server/localization/verification.hpp"
 
 namespace liloc {
 namespace {
@@ -106,6 +107,33 @@ TEST(Localizer, ASearchThatWasCutOffIsNotBelieved) {
     EXPECT_EQ(reply.reason, Reason::overloaded);
     EXPECT_THAT(reply.text, testing::HasSubstr("cut off"));
   }
+}
+
+TEST(Localizer, ATrackedDevicesRoutineSearchWaitsForSpareTimeButNotForever) {
+  bool idle = false;
+  LocalizerOptions options;
+  options.idle = [&] { return idle; };
+  World world(2, options);
+  int k = 0;
+  const auto ask = [&] {
+    world.watch(k);
+    const SpotReply reply = world.localizer->locate(world.request(k, world.truth(1)));
+    ++k;
+    return reply;
+  };
+  const auto spots_until_searched = [&] {
+    int spots = 1;
+    for (; spots < 100; ++spots) {
+      const SpotReply reply = ask();
+      EXPECT_TRUE(reply.verified()) << "spot " << k << " " << name_of(reply.reason);
+      if (reply.margin != 0) break;
+    }
+    return spots;
+  };
+  while (k < 20 && !ask().verified()) continue;
+  EXPECT_EQ(spots_until_searched(), VerifyOptions{}.research_latest);
+  idle = true;
+  EXPECT_EQ(spots_until_searched(), VerifyOptions{}.research_every);
 }
 
 /// Four spots of a walk whose device takes `up_sensor` of the truth for up; how many are right.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <map>
@@ -48,6 +49,11 @@ class Answers {
     const auto found = replies_.find({client, seq});
     return found == replies_.end() ? Reason::no_answer : found->second.reason;
   }
+  std::size_t count(Reason reason) {
+    const std::scoped_lock lock(mutex_);
+    return static_cast<std::size_t>(
+        std::ranges::count_if(replies_, [&](const auto& r) { return r.second.reason == reason; }));
+  }
   void expect_each_once(std::size_t requests) {
     const std::scoped_lock lock(mutex_);
     EXPECT_EQ(count_.size(), requests);
@@ -83,6 +89,11 @@ class Gate {
     open_ = true;
     changed_.notify_all();
   }
+  void close() {
+    const std::scoped_lock lock(mutex_);
+    open_ = false;
+    inside_ = 0;
+  }
 
  private:
   std::mutex mutex_;
@@ -97,7 +108,7 @@ SpotReply verified(const SpotRequest& request) {
   return reply;
 }
 
-TEST(Desk, AFullQueueRefusesTheOldest) {
+TEST(Desk, AFullQueueRefusesTheOldestOfStrangers) {
   Gate gate;
   Answers answers;
   Desk desk({.queue = 2}, {.locate = [&](const SpotRequest& r) { return gate.pass(r); }}, answers.sink());
@@ -260,6 +271,118 @@ TEST(Desk, AFloodIsLimitedPerClient) {
   EXPECT_EQ(answers.reason("flood", 50), Reason::rate_limit);
   EXPECT_EQ(answers.reason("calm", 1), Reason::confirmed);
   answers.expect_each_once(51);
+}
+
+TEST(Desk, AFloodIsLimitedPerIdentityHoweverManyWritersItHas) {
+  Answers answers;
+  Desk desk({.max_rate_hz = 5}, {.locate = verified}, answers.sink());
+  for (std::uint64_t writer = 1; writer <= 50; ++writer) {
+    auto one = arrival("flood", writer);
+    one.from.publication = writer;
+    desk.submit(std::move(one));
+  }
+  ASSERT_TRUE(answers.wait_for(50));
+  EXPECT_EQ(answers.count(Reason::rate_limit), 45U);
+}
+
+// Answers clients of which `known_` are verified, one at a time and only once the gate is open.
+class Ranked : public testing::Test {
+ protected:
+  void verify(const std::string& client) {
+    gate_.open();
+    desk_.submit(arrival(client, 1));
+    ASSERT_TRUE(answers_.wait_for(++verified_));
+    gate_.close();
+  }
+  SpotReply locate(const SpotRequest& request) {
+    {
+      const std::scoped_lock lock(mutex_);
+      order_.push_back(request.client_id);
+    }
+    return gate_.pass(request);
+  }
+  std::vector<std::string> order_after(std::size_t answers) {
+    gate_.open();
+    EXPECT_TRUE(answers_.wait_for(answers));
+    desk_.stop();
+    return {order_.end() - static_cast<std::ptrdiff_t>(answers - verified_), order_.end()};
+  }
+
+  Gate gate_;
+  Answers answers_;
+  std::mutex mutex_;
+  std::vector<std::string> order_;
+  std::size_t verified_ = 0;
+  Desk desk_{{.queue = 4}, {.locate = [this](const SpotRequest& r) { return locate(r); }}, answers_.sink()};
+};
+
+wire::Arrival lost(const std::string& client, std::uint64_t seq) {
+  auto asked = arrival(client, seq);
+  asked.request.odom_segment = 7;
+  return asked;
+}
+
+TEST_F(Ranked, TrackedDevicesComeBeforeSearchesAndKnownOnesBeforeStrangers) {
+  for (const char* client : {"tracked", "known"}) verify(client);
+  desk_.submit(arrival("stranger1", 1));
+  gate_.wait_inside();
+  desk_.submit(arrival("stranger2", 1));
+  desk_.submit(lost("known", 2));
+  desk_.submit(arrival("tracked", 2));
+  EXPECT_EQ(order_after(6), (std::vector<std::string>{"stranger1", "tracked", "known", "stranger2"}));
+}
+
+TEST_F(Ranked, WhoWasServedLongestAgoComesFirst) {
+  for (const char* client : {"a", "b", "c"}) verify(client);
+  desk_.submit(arrival("stranger", 1));
+  gate_.wait_inside();
+  for (const char* client : {"c", "a", "b"}) desk_.submit(arrival(client, 2));
+  EXPECT_EQ(order_after(7), (std::vector<std::string>{"stranger", "a", "b", "c"}));
+}
+
+TEST_F(Ranked, AFullQueueRefusesStrangersBeforeAnyoneElse) {
+  for (const char* client : {"tracked", "known"}) verify(client);
+  desk_.submit(arrival("stranger", 1));
+  gate_.wait_inside();
+  desk_.submit(arrival("tracked", 2));
+  desk_.submit(lost("known", 2));
+  for (int i = 0; i < 500; ++i) desk_.submit(arrival("flood" + std::to_string(i), 1));
+  gate_.open();
+  ASSERT_TRUE(answers_.wait_for(505));
+  EXPECT_EQ(answers_.reason("tracked", 2), Reason::confirmed);
+  EXPECT_EQ(answers_.reason("known", 2), Reason::confirmed);
+  EXPECT_EQ(answers_.count(Reason::overloaded), 498U);
+}
+
+Waiting waiting(const std::string& client, Standing standing) {
+  return {arrival(client, 1), standing, std::chrono::steady_clock::now()};
+}
+
+TEST(WaitingLine, SearchesGetTheirShareThoughTrackedDevicesNeverCease) {
+  WaitingLine line(16);
+  std::chrono::milliseconds searching{0}, tracking{0};
+  for (const auto* busy : {"a", "b"}) ASSERT_FALSE(line.push(waiting(busy, Standing::tracked)));
+  for (const auto* lost : {"x", "y"}) ASSERT_FALSE(line.push(waiting(lost, Standing::known)));
+  while (tracking + searching < 20s) {
+    auto begun = line.begin();
+    ASSERT_TRUE(begun);
+    const auto took = begun->searches() ? 50ms : 4ms;
+    (begun->searches() ? searching : tracking) += took;
+    line.end(*begun, took);
+    ASSERT_FALSE(line.push(waiting(begun->arrival.from.client_id, begun->standing)));
+  }
+  EXPECT_GT(searching, 4s);
+  EXPECT_LT(searching, 6s);
+}
+
+TEST(WaitingLine, SearchesGetAllTheTimeThatNobodyElseWants) {
+  WaitingLine line(16);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_FALSE(line.push(waiting("x", Standing::stranger)));
+    auto begun = line.begin();
+    ASSERT_TRUE(begun);
+    line.end(*begun, 50ms);
+  }
 }
 
 TEST(Desk, AProblemSeenOnTheWayIsPassedOn) {

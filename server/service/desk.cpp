@@ -191,6 +191,11 @@ void Desk::client_left(const std::string& client_id) {
   if (backend_.forget) backend_.forget(client_id);
 }
 
+void Desk::publication_gone(std::uint64_t publication) {
+  const std::scoped_lock lock(mutex_);
+  sessions_.forget_publication(publication);
+}
+
 bool Desk::idle() const {
   const std::scoped_lock lock(mutex_);
   return line_.empty();

@@ -39,6 +39,7 @@ class Desk {
   /// Sends on the held requests whose time has come: that are ready, or have waited long enough. Any thread.
   void release();
   void client_left(const std::string& client_id);
+  void publication_gone(std::uint64_t publication);
   /// Refuses new requests, finishes what waits, joins the workers. Safe to call twice.
   void stop();
 

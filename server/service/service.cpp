@@ -40,7 +40,8 @@ Result<std::unique_ptr<Service>> Service::create(wire::Dispatcher& dispatcher, c
            [desk, left](const std::string& id) {
              left->say(id, "has left");
              desk->client_left(id);
-           }});
+           },
+       .on_gone = [desk](std::uint64_t publication) { desk->publication_gone(publication); }});
   if (!link) return tl::unexpected(link.error());
   service->link_ = std::move(*link);
   dispatcher.every(std::chrono::milliseconds(10), [desk] { desk->release(); });

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -35,6 +36,9 @@ std::map<std::string, Words> read_header(std::istream& in) {
   std::map<std::string, Words> header;
   std::string line(kLongestLine, '\0');
   for (int i = 0; i < kMostLines && in.getline(line.data(), static_cast<std::streamsize>(line.size())); ++i) {
+    const auto length = std::min(line.size(), static_cast<std::size_t>(in.gcount()));
+    if (std::memchr(line.data(), '\0', length > 0 ? length - 1 : 0) != nullptr)
+      return {};  // PCL reads on behind it
     Words words = words_of(line.c_str());
     if (words.empty() || words.front().starts_with('#')) continue;
     const std::string keyword = words.front();

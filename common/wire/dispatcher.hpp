@@ -39,8 +39,8 @@ class Dispatcher {
   void stop();
 
   [[nodiscard]] const Participant& participant() const;
-  /// Samples that DDS had to drop before this dispatcher's readers saw them, since the start. After `start`; any
-  /// thread.
+  /// Samples that DDS had to drop before this dispatcher's readers saw them, since the start. After `start`;
+  /// any thread.
   [[nodiscard]] std::uint64_t samples_lost() const;
 
  private:

@@ -102,9 +102,10 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   app.add_option("--log-format", raw.log_format, "text, or json: an object a line")
       ->check(command::one_of({"text", "json"}))
       ->capture_default_str();
-  app.add_option("--metrics", raw.metrics,
-                 "PORT or ADDRESS:PORT of /metrics (Prometheus), /healthz and /readyz; PORT alone: on loopback; "
-                 "default: none");
+  app.add_option(
+      "--metrics", raw.metrics,
+      "PORT or ADDRESS:PORT of /metrics (Prometheus), /healthz and /readyz; PORT alone: on loopback; "
+      "default: none");
   app.add_option("--status-every", options.status_every_s, "Seconds between status lines; 0: none")
       ->check(in_range(0.0, 86'400.0))
       ->capture_default_str();

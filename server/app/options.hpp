@@ -18,9 +18,9 @@ struct ServerOptions {
   LocalizerOptions localizer{.search_limit = std::chrono::seconds(2)};
   ServiceOptions service;
   log::Level log_level = log::Level::info;
-  bool log_json = false;  ///< a JSON object a line, in place of text
+  bool log_json = false;                ///< a JSON object a line, in place of text
   std::optional<web::Address> metrics;  ///< where metrics and health are told; empty: nowhere
-  double status_every_s = 10;  ///< a line in the log; 0: none
+  double status_every_s = 10;           ///< a line in the log; 0: none
 };
 
 /// Fills `options`; or prints help, version or what is wrong, and returns the exit code (0 or 2).

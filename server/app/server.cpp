@@ -111,13 +111,13 @@ Status Server::open_streams(const ServerOptions& options) {
 }
 
 Status Server::open_web(const web::Address& address) {
-  auto web = web::WebServer::start(address, {{"/metrics",
-                                              [this] {
-                                                return web::Page{200, metrics_.text(facts()),
-                                                                 "text/plain; version=0.0.4; charset=utf-8"};
-                                              }},
-                                             {"/healthz", [this] { return web::live_page(facts()); }},
-                                             {"/readyz", [this] { return web::ready_page(facts()); }}});
+  auto web = web::WebServer::start(
+      address, {{"/metrics",
+                 [this] {
+                   return web::Page{200, metrics_.text(facts()), "text/plain; version=0.0.4; charset=utf-8"};
+                 }},
+                {"/healthz", [this] { return web::live_page(facts()); }},
+                {"/readyz", [this] { return web::ready_page(facts()); }}});
   if (!web) return fail("--metrics: {}", web.error().message);
   web_ = std::move(*web);
   return {};

@@ -64,8 +64,8 @@ Status Ingest::subscribe(wire::Dispatcher& dispatcher, std::size_t index) {
     if (auto size = same_size(lidar, "depth image", image->width, image->height); !size)
       return drop(index, size.error().message);
     const StampNs stamp_ns = image->stamp_ns;
-    const double valid = share_of(image->units.size() - static_cast<std::size_t>(std::ranges::count(image->units, 0)),
-                                  lidar.camera);
+    const double valid = share_of(
+        image->units.size() - static_cast<std::size_t>(std::ranges::count(image->units, 0)), lidar.camera);
     take(index, stamp_ns, valid, sink_.add_depth(index, std::move(*image)));
   };
   const auto on_points = [this, index, &lidar](const Result<wire::StampedCloud>& cloud) {

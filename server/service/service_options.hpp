@@ -18,8 +18,8 @@ struct ServiceOptions {
   [[nodiscard]] Result<ServiceOptions> validated() const;  ///< the error names the field and its range
 };
 
-/// Where a request's time goes. hold: until the ceiling has caught up, of those that wait for it. wait: from its
-/// arrival to a worker, hold included. work: in the localizer.
+/// Where a request's time goes. hold: until the ceiling has caught up, of those that wait for it. wait: from
+/// its arrival to a worker, hold included. work: in the localizer.
 enum class Stage : std::uint8_t { hold, wait, work };
 
 /// What the service puts its requests to. `locate` runs on worker threads side by side; the others on the

@@ -38,7 +38,8 @@ class Sessions {
   }
   /// True if this is not the run of the client that was heard last: what is known of it holds no longer.
   [[nodiscard]] bool begins(const wire::Sender& from) {
-    auto [client, is_new] = clients_.try_emplace(from.client_id, Client{from.session, false, 0, SpotStatus::refused});
+    auto [client, is_new] =
+        clients_.try_emplace(from.client_id, Client{from.session, false, 0, SpotStatus::refused});
     if (is_new || client->second.session == from.session) return false;
     client->second = {from.session, false, 0, SpotStatus::refused};
     return true;

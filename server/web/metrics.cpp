@@ -17,8 +17,8 @@ using prometheus::MetricType;
 
 constexpr std::array kStages{Stage::hold, Stage::wait, Stage::work};
 // A tracked spot takes 4 ms, a search 30 to 100 ms, a device waits 4 s for an answer.
-const prometheus::Histogram::BucketBoundaries kSeconds{0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1,
-                                                       0.25,  0.5,    1,     2.5,  5};
+const prometheus::Histogram::BucketBoundaries kSeconds{0.001, 0.0025, 0.005, 0.01, 0.025, 0.05,
+                                                       0.1,   0.25,   0.5,   1,    2.5,   5};
 
 // Told from 0 on, so that rates see the first one of each.
 constexpr std::array kUsual{std::pair{SpotStatus::verified, Reason::confirmed},
@@ -67,11 +67,13 @@ void append_server(const ServerFacts& facts, std::vector<MetricFamily>& out) {
   out.push_back(single(MetricType::Gauge, "liloc_uptime_seconds", "Since the start", facts.uptime_s));
   out.push_back(single(MetricType::Gauge, "liloc_queue_depth", "Requests that wait", facts.service.queued));
   out.push_back(single(MetricType::Counter, "liloc_dds_samples_lost_total",
-                       "Samples that DDS dropped before they were read", static_cast<double>(facts.samples_lost)));
+                       "Samples that DDS dropped before they were read",
+                       static_cast<double>(facts.samples_lost)));
   if (const auto age_s = gpc_age_s(facts))
     out.push_back(single(MetricType::Gauge, "liloc_gpc_age_seconds",
                          "Since the newest ceiling frame of any LiDAR came", *age_s));
-  auto clients = family(MetricType::Gauge, "liloc_clients", "Connected devices by their last answer; none: not yet");
+  auto clients =
+      family(MetricType::Gauge, "liloc_clients", "Connected devices by their last answer; none: not yet");
   const ServiceCounters& s = facts.service;
   const double answered = s.clients_verified + s.clients_provisional + s.clients_refused;
   add(clients, s.clients_verified, {{"state", "verified"}});
@@ -85,7 +87,8 @@ void append_lidars(const ServerFacts& facts, std::vector<MetricFamily>& out) {
   auto up = family(MetricType::Gauge, "liloc_lidar_up", "1 where the LiDAR is heard, at its rate or slowly");
   auto rate = family(MetricType::Gauge, "liloc_lidar_rate_hz", "Frames a second");
   auto age = family(MetricType::Gauge, "liloc_lidar_age_seconds", "Since the newest good frame came");
-  auto valid = family(MetricType::Gauge, "liloc_lidar_valid_share", "Of the newest frame's pixels, with a return");
+  auto valid =
+      family(MetricType::Gauge, "liloc_lidar_valid_share", "Of the newest frame's pixels, with a return");
   auto frames = family(MetricType::Counter, "liloc_lidar_frames_total", "Frames that were taken");
   auto dropped = family(MetricType::Counter, "liloc_lidar_dropped_total", "Frames that could not be used");
   for (const LidarFacts& lidar : facts.lidars) {
@@ -103,7 +106,8 @@ void append_lidars(const ServerFacts& facts, std::vector<MetricFamily>& out) {
 
 void append_process(std::vector<MetricFamily>& out) {  // by the names that Prometheus' own clients use
   const ProcessFacts facts = process_facts();
-  out.push_back(single(MetricType::Gauge, "process_resident_memory_bytes", "Memory in use", facts.resident_bytes));
+  out.push_back(
+      single(MetricType::Gauge, "process_resident_memory_bytes", "Memory in use", facts.resident_bytes));
   out.push_back(single(MetricType::Counter, "process_cpu_seconds_total", "Processor time", facts.cpu_s));
   out.push_back(single(MetricType::Gauge, "process_threads", "Threads", facts.threads));
   out.push_back(single(MetricType::Gauge, "process_open_fds", "Open files", facts.open_files));
@@ -124,11 +128,13 @@ Metrics::Metrics() : impl_(std::make_unique<Impl>()) {
                        .Register(impl_->registry);
   impl_->requests = &requests;
   for (const auto& [status, reason] : kUsual) requests.Add(labels_of(status, reason));
-  auto& stages = prometheus::BuildHistogram()
-                     .Name("liloc_request_stage_seconds")
-                     .Help("Time of requests. hold: for the ceiling to catch up; wait: until a worker takes it, hold "
-                           "included; work: in the localizer")
-                     .Register(impl_->registry);
+  auto& stages =
+      prometheus::BuildHistogram()
+          .Name("liloc_request_stage_seconds")
+          .Help(
+              "Time of requests. hold: for the ceiling to catch up; wait: until a worker takes it, hold "
+              "included; work: in the localizer")
+          .Register(impl_->registry);
   for (const Stage stage : kStages)
     impl_->stages.at(static_cast<std::size_t>(stage)) = &stages.Add({{"stage", name_of(stage)}}, kSeconds);
 }

@@ -105,9 +105,17 @@ Result<std::unique_ptr<WebServer>> WebServer::start(const Address& address, Page
   const std::string where = fmt::format("{}:{}", v6 ? "[" + address.host + "]" : address.host, address.port);
   auto impl = std::make_unique<Impl>();
   impl->pages = std::move(pages);
-  std::array<const char*, 11> options{"listening_ports",  where.c_str(), "num_threads",       "2",
-                                      "connection_queue", "16",          "request_timeout_ms", "2000",
-                                      "enable_keep_alive", "no",         nullptr};
+  std::array<const char*, 11> options{"listening_ports",
+                                      where.c_str(),
+                                      "num_threads",
+                                      "2",
+                                      "connection_queue",
+                                      "16",
+                                      "request_timeout_ms",
+                                      "2000",
+                                      "enable_keep_alive",
+                                      "no",
+                                      nullptr};
   mg_callbacks callbacks{};
   callbacks.log_message = keep_silent;
   mg_init_data init{&callbacks, nullptr, options.data()};

@@ -29,8 +29,8 @@ struct Address {
 
 class WebServer {
  public:
-  /// Errors: the address is taken, or not of this host. At most 16 connections wait; a slow one is dropped after
-  /// 2 s.
+  /// Errors: the address is taken, or not of this host. At most 16 connections wait; a slow one is dropped
+  /// after 2 s.
   [[nodiscard]] static Result<std::unique_ptr<WebServer>> start(const Address& address, Pages pages);
   /// Waits for the pages in work.
   ~WebServer();

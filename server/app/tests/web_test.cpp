@@ -1,4 +1,5 @@
-// Metrics and health of a whole server over HTTP, and whether the dashboard and the alerts ask for what it tells.
+// Metrics and health of a whole server over HTTP, and whether the dashboard and the alerts ask for what it
+// tells.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,7 +93,8 @@ TEST_F(Web, DashboardAndAlertsAskForWhatItTellsAndForAllOfIt) {
   send_a_frame();
   const auto told = names_in(get(port, "/metrics"), "# TYPE (\\w+) ");
   ASSERT_GT(told.size(), 15U);
-  const std::string dashboard = file("deploy/grafana/liloc.json"), alerts = file("deploy/prometheus/liloc-alerts.yml");
+  const std::string dashboard = file("deploy/grafana/liloc.json"),
+                    alerts = file("deploy/prometheus/liloc-alerts.yml");
   std::string queries;
   const auto parsed = nlohmann::json::parse(dashboard);
   for (const auto& panel : parsed.at("panels"))

@@ -28,10 +28,11 @@ TEST(Metrics, TellWhatTheServerIsNow) {
   const std::string text = Metrics().text(busy());
   for (const char* line :
        {"liloc_server_info{server_id=\"edge1\",version=\"0.1.0\"} 1", "liloc_queue_depth 3",
-        "liloc_clients{state=\"verified\"} 2", "liloc_clients{state=\"none\"} 1", "liloc_lidar_up{lidar=\"ceiling0\"} 1",
-        "liloc_lidar_up{lidar=\"ceiling1\"} 0", "liloc_lidar_rate_hz{lidar=\"ceiling0\"} 7.5",
-        "liloc_lidar_valid_share{lidar=\"ceiling0\"} 0.75", "liloc_lidar_dropped_total{lidar=\"ceiling0\"} 2",
-        "liloc_gpc_age_seconds 0.25", "liloc_dds_samples_lost_total 11", "# TYPE liloc_lidar_frames_total counter"})
+        "liloc_clients{state=\"verified\"} 2", "liloc_clients{state=\"none\"} 1",
+        "liloc_lidar_up{lidar=\"ceiling0\"} 1", "liloc_lidar_up{lidar=\"ceiling1\"} 0",
+        "liloc_lidar_rate_hz{lidar=\"ceiling0\"} 7.5", "liloc_lidar_valid_share{lidar=\"ceiling0\"} 0.75",
+        "liloc_lidar_dropped_total{lidar=\"ceiling0\"} 2", "liloc_gpc_age_seconds 0.25",
+        "liloc_dds_samples_lost_total 11", "# TYPE liloc_lidar_frames_total counter"})
     EXPECT_THAT(text, HasSubstr(line));
   EXPECT_THAT(text, Not(HasSubstr("liloc_lidar_age_seconds{lidar=\"ceiling1\"}")));  // it has sent nothing
   EXPECT_THAT(text, HasSubstr("process_resident_memory_bytes "));

@@ -16,10 +16,15 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 std::unique_ptr<WebServer> served() {
-  auto server =
-      WebServer::start({}, {{"/fine", [] { return Page{200, "hello\n"}; }},
-                            {"/ill", [] { return Page{503, "not now\n"}; }},
-                            {"/broken", []() -> Page { throw std::runtime_error("out of order"); }}});
+  auto server = WebServer::start({}, {{"/fine",
+                                       [] {
+                                         return Page{200, "hello\n"};
+                                       }},
+                                      {"/ill",
+                                       [] {
+                                         return Page{503, "not now\n"};
+                                       }},
+                                      {"/broken", []() -> Page { throw std::runtime_error("out of order"); }}});
   EXPECT_TRUE(server) << server.error().message;
   return std::move(*server);
 }
@@ -32,7 +37,9 @@ TEST(WebServer, ServesItsPagesAndNothingElse) {
   EXPECT_THAT(get(server->port(), "/fine?x=1"), StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(get(server->port(), "/ill"), StartsWith("HTTP/1.1 503"));
   for (const char* path : {"/", "/fine/more", "/etc/passwd", "/../../etc/passwd", "/%2e%2e/etc/passwd"})
-    EXPECT_THAT(get(server->port(), path), testing::AnyOf(StartsWith("HTTP/1.1 404"), StartsWith("HTTP/1.1 400"))) << path;
+    EXPECT_THAT(get(server->port(), path),
+                testing::AnyOf(StartsWith("HTTP/1.1 404"), StartsWith("HTTP/1.1 400")))
+        << path;
 }
 
 TEST(WebServer, AnswersGetAndHeadAlone) {
@@ -66,8 +73,8 @@ TEST(WebAddress, IsAPortOrAnAddressWithOne) {
   EXPECT_EQ(address_from("9464").value(), (Address{"127.0.0.1", 9464}));
   EXPECT_EQ(address_from("0.0.0.0:80").value(), (Address{"0.0.0.0", 80}));
   EXPECT_EQ(address_from("[::]:9464").value(), (Address{"::", 9464}));
-  for (const char* wrong : {"", "0", "65536", "94s", "9464,80", "localhost:80", ":80", "::1:80", "[127.0.0.1]:80", "1.2.3.4:",
-                            "[]:80", "0.0.0.0:80s"})
+  for (const char* wrong : {"", "0", "65536", "94s", "9464,80", "localhost:80", ":80", "::1:80",
+                            "[127.0.0.1]:80", "1.2.3.4:", "[]:80", "0.0.0.0:80s"})
     EXPECT_FALSE(address_from(wrong)) << wrong;
 }
 

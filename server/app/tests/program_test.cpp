@@ -176,6 +176,9 @@ TEST(Program, FlagsAreRefusedByTheirName) {
            {"--site s --status-every nan", "--status-every"},
            {"--site s --interface ''", "--interface"},
            {"--site s --method paper --verify tracks", "--verify tracks"},
+           {"--site s --metrics localhost:80", "--metrics is 'localhost:80'; give PORT"},
+           {"--site s --metrics 70000", "--metrics is '70000'"},
+           {"--site s --log-format xml", "--log-format"},
            {"--site s --one --two", "not expected: '--one' '--two'"}}) {
     const Outcome outcome = outcome_of(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.out;

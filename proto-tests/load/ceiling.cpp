@@ -6,6 +6,11 @@
 #include "proto-tests/replay/streams.hpp"
 
 namespace liloc::load {
+namespace {
+
+constexpr double kLate_s = 0.2;  // under two periods of a LiDAR
+
+}  // namespace
 
 Result<std::uint64_t> stream_ceiling(const Script& script, const RunClock& clock, double end_s,
                                      const wire::DomainOptions& seat) {
@@ -13,16 +18,16 @@ Result<std::uint64_t> stream_ceiling(const Script& script, const RunClock& clock
   if (!participant) return tl::unexpected(participant.error());
   auto streams = replay::Streams::create(*participant, script.site, {});
   if (!streams) return tl::unexpected(streams.error());
-  const double begun_s = clock.now_s();
   const std::size_t count = script.ceiling.size();
   std::uint64_t bytes = 0;
   for (std::size_t i = 0; !replay::stop_requested(); ++i) {
     const std::size_t lap = i / count, at = i % count;
     const bool back = lap % 2 == 1;
     const CeilingFrame& frame = script.ceiling[back ? count - 1 - at : at];
-    const double due_s =
-        begun_s + static_cast<double>(lap) * script.seconds + (back ? script.seconds - frame.at_s : frame.at_s);
+    const double due_s = clock.ceiling_from_s + static_cast<double>(lap) * script.seconds +
+                         (back ? script.seconds - frame.at_s : frame.at_s);
     if (due_s > end_s) break;
+    if (due_s < clock.now_s() - kLate_s) continue;  // of the time until this process stood
     std::this_thread::sleep_until(clock.at(due_s));
     DepthImage image = frame.image;
     image.stamp_ns = clock.start_ns + from_seconds(due_s);

@@ -38,8 +38,7 @@ Device::Device(const Script& script, const LoadOptions& options, const RunClock&
       plan_(std::move(plan)),
       random_(plan_.seed, 1),
       schedule_(schedule_of(options)),
-      path_(plan_.path),
-      offset_s_(plan_.offset_s) {}
+      path_(plan_.path) {}
 
 Status Device::join(const wire::DomainOptions& domain) {
   auto participant = wire::Participant::create(domain);
@@ -67,9 +66,8 @@ void Device::leave() {
 
 const ScriptFrame& Device::frame_at(double planned_s) const {
   const Path& path = script_.paths[path_];
-  const double last = static_cast<double>(path.size() - 1);
-  const double at = to_and_fro(std::max(0.0, (planned_s + offset_s_) / kFrame_s), last);
-  return path[static_cast<std::size_t>(std::lround(at))];
+  const double at_s = to_and_fro(clock_.site_s(planned_s), script_.seconds);
+  return path[std::min(static_cast<std::size_t>(std::lround(at_s / kFrame_s)), path.size() - 1)];
 }
 
 /// Odometry breaks and is noticed; a device is carried elsewhere and its odometry notices nothing.
@@ -85,7 +83,6 @@ void Device::meet_fate(double planned_s) {
   ++next_kidnap_;
   const Pose T_odom_sensor = T_odom_script_ * frame_at(planned_s).T_odom_sensor;
   path_ = static_cast<std::size_t>(random_.below(static_cast<int>(script_.paths.size())));
-  offset_s_ = random_.uniform(0, 2 * options_.path_s);
   T_odom_script_ = T_odom_sensor * frame_at(planned_s).T_odom_sensor.inverse();
 }
 

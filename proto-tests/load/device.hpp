@@ -1,5 +1,6 @@
 #pragma once
 // One simulated device: its own DDS participant, its client's schedule and clock, requests from the script.
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -19,6 +20,10 @@ struct RunClock {
   std::chrono::steady_clock::time_point start;
   StampNs start_ns = 0;  ///< the same moment, wall clock
   double from_s = 0, to_s = 0;
+  double ceiling_from_s = 0;  ///< when the site began to move, before the run's start
+
+  /// What the site's clock would show, had it not gone to and fro; never under 0.
+  [[nodiscard]] double site_s(double at_s) const { return std::max(0.0, at_s - ceiling_from_s); }
 
   [[nodiscard]] std::chrono::steady_clock::time_point at(double s) const {
     return start + std::chrono::nanoseconds(from_seconds(s));
@@ -71,7 +76,6 @@ class Device {
   sim::Random random_;
   RequestSchedule schedule_;
   std::size_t path_, next_kidnap_ = 0;
-  double offset_s_;                        ///< place on the way, less the time since the run's start
   Pose T_odom_script_ = Pose::Identity();  ///< the script's odometry in this device's
   std::uint32_t segment_ = 1;
   std::vector<LocalPose> poses_;  ///< since the last request

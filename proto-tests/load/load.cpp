@@ -93,6 +93,7 @@ class Run {
                           std::chrono::system_clock::now().time_since_epoch())
                           .count() +
                       from_seconds(lead_s);
+    clock_.ceiling_from_s = -lead_s;
     clock_.from_s = LoadOptions::warmup_s(clients);
     clock_.to_s = clock_.from_s + options.seconds;
     seat_.domain = domain;

@@ -18,7 +18,7 @@ struct LoadOptions {
   sim::SiteKind kind = sim::SiteKind::office;
   int people = 2, lidars = 3;
   double lidar_rate_hz = 6;
-  int paths = 6;          ///< simulated ways; devices share them, each from a place and at a time of its own
+  int paths = 6;          ///< simulated ways; devices share them, each with frames at times of its own
   double path_s = 20;     ///< length of a way, walked to and fro
   int processes = 1;      ///< that play the devices
   double lost_share = 0;  ///< of the devices: they lose their odometry, all at one moment

@@ -19,7 +19,6 @@ DevicePlan draw(const LoadOptions& options, std::size_t paths, sim::Random& rand
   plan.start_s = start_s;
   plan.end_s = end_s;
   plan.path = static_cast<std::size_t>(random.below(static_cast<int>(paths)));
-  plan.offset_s = random.uniform(0, 2 * options.path_s);
   plan.clock_offset_s = random.uniform(-options.clock_offset_s, options.clock_offset_s);
   plan.seed = static_cast<std::uint64_t>(random.unit() * 0x1.0p53);
   if (options.kidnap_s > 0)

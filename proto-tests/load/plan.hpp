@@ -11,7 +11,6 @@ namespace liloc::load {
 struct DevicePlan {
   std::string id;
   std::size_t path = 0;                                        ///< its way
-  double offset_s = 0;                                         ///< where on it the device starts
   double start_s = 0, end_s = 0;                               ///< of its time here
   double lost_at_s = std::numeric_limits<double>::infinity();  ///< when it loses its odometry
   std::vector<double> kidnaps_s;                               ///< when it is carried elsewhere, rising

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "client/engine/engine.hpp"
 #include "proto-tests/replay/prepare.hpp"
@@ -36,8 +37,8 @@ class Author {
   Status add(const sim::DeviceFrame& frame) {
     const auto result = engine_.add_depth(frame.image);
     if (!result) return tl::unexpected(result.error());
-    if (result->odom_segment != segment_) path_.clear();  // poses of two segments are no way
-    segment_ = result->odom_segment;
+    if (std::exchange(segment_, result->odom_segment) != result->odom_segment)
+      for (ScriptFrame& before : path_) before = {before.T_map_sensor, result->T_odom_sensor, false, {}};
     ScriptFrame& made = path_.emplace_back();
     made.T_map_sensor = frame.T_map_sensor;
     made.T_odom_sensor = result->T_odom_sensor;

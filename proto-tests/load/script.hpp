@@ -20,7 +20,7 @@ struct ScriptFrame {
   std::optional<SpotRequest> request;  ///< as if asked at every frame; none of a frame that tells too little
 };
 
-/// A stretch of one odometry segment, a frame every kFrame_s.
+/// A frame every kFrame_s, from the site's time 0. What was before odometry broke tells nothing.
 using Path = std::vector<ScriptFrame>;
 
 struct CeilingFrame {

@@ -69,10 +69,10 @@ TEST(LoadPlan, AShareOfTheDevicesLosesItsWayAtOneMoment) {
 
 TEST(LoadPlan, TheSameSeedDrawsTheSame) {
   LoadOptions o = options(20);
-  EXPECT_EQ(draw_plans(o, 3, 6)[2].offset_s, draw_plans(o, 5, 6)[2].offset_s);
-  const double offset_s = draw_plans(o, 3, 6)[2].offset_s;
+  EXPECT_EQ(draw_plans(o, 3, 6)[2].clock_offset_s, draw_plans(o, 5, 6)[2].clock_offset_s);
+  const double clock_offset_s = draw_plans(o, 3, 6)[2].clock_offset_s;
   o.seed = 8;
-  EXPECT_NE(draw_plans(o, 3, 6)[2].offset_s, offset_s);
+  EXPECT_NE(draw_plans(o, 3, 6)[2].clock_offset_s, clock_offset_s);
 }
 
 TEST(LoadOptions, ARampRunsFromItsFirstToItsLast) {

@@ -1,8 +1,8 @@
 #include "proto-tests/load/load.hpp"
 
-#include <signal.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <sstream>

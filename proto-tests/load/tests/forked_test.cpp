@@ -1,9 +1,9 @@
 #include "proto-tests/load/forked.hpp"
 
 #include <gmock/gmock.h>
-#include <signal.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <stdexcept>
 
 namespace liloc::load {

@@ -135,8 +135,9 @@ TEST(CApiFields, Options) {
   ASSERT_TRUE(options) << options.error().message;
   const auto& [id, camera, domain, interface, peer_list, min_range, max_range, voxel, interval, timeout, local,
                T_imu, still, cold, seed, queue, trace, T_base, submap, share, bytes, searching, lost_m,
-               lost_deg, codec] = *options;
+               lost_deg, codec, frames_from] = *options;
   EXPECT_EQ(codec, Codec::voxel);
+  EXPECT_EQ(frames_from, "");  // the calls of a program in C
   EXPECT_EQ(id + interface + trace, "roboteth9trace");
   EXPECT_EQ(camera.width + camera.height, 3);
   EXPECT_EQ(camera.fx + camera.fy + camera.cx + camera.cy + camera.depth_scale_m, 25);

@@ -1,0 +1,94 @@
+// `liloc calibrate` on simulated sites, from places that are off: what it finds, and what it does not trust.
+#include <gmock/gmock.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/recording/recording.hpp"
+#include "common/testing/program.hpp"
+
+namespace liloc {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+Outcome liloc(const std::string& arguments) {
+  return run_program(LILOC_PROGRAM, arguments);
+}
+
+/// Two simulated sites, made once; the first one's LiDARs stand 5 cm and 3 degrees off in `off.json`.
+class Calibrate : public testing::Test {
+ public:
+  static void SetUpTestSuite() {
+    std::string pattern = (fs::temp_directory_path() / "liloc_calibrate_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    for (const char* seed : {"711", "712"})
+      ASSERT_EQ(liloc("sim " + path(seed) + " --seed " + seed + " --seconds 3").exit_code, 0);
+    nlohmann::json site = nlohmann::json::parse(std::ifstream(path("711/site.json")));
+    for (auto& lidar : site["global_lidars"]) {
+      lidar["note"] = "by the door";
+      auto& T = lidar["T_map_sensor"];
+      T["translation"][0] = T["translation"][0].get<double>() + 0.05;
+      const auto q = T["rotation_xyzw"];
+      const Eigen::Quaterniond turned =
+          Eigen::Quaterniond(q[3].get<double>(), q[0].get<double>(), q[1].get<double>(), q[2].get<double>()) *
+          Eigen::Quaterniond(Eigen::AngleAxisd(radians(3), Eigen::Vector3d(1, 2, 2).normalized()));
+      T["rotation_xyzw"] = {turned.x(), turned.y(), turned.z(), turned.w()};
+    }
+    std::ofstream(path("off.json")) << site;
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+
+ protected:
+  static std::string path(const std::string& name) { return (folder_ / name).string(); }
+  static Outcome calibrate(const std::string& rest) {
+    return liloc("calibrate " + path("711") + " --site " + path("off.json") + " --frames 15 " + rest);
+  }
+  static void expect_true_places(const std::string& found_file) {
+    const auto found = read_site(path(found_file)), truth = read_site(path("711/site.json"));
+    ASSERT_TRUE(found && truth);
+    for (std::size_t i = 0; i < truth->global_lidars.size(); ++i) {
+      const Pose &T = found->global_lidars[i].T_map_sensor, &T_true = truth->global_lidars[i].T_map_sensor;
+      EXPECT_LT(distance_m(T, T_true), 0.01) << i;
+      EXPECT_LT(degrees(angle_between_rad(T, T_true)), 0.3) << i;
+    }
+  }
+
+  inline static fs::path folder_;
+};
+
+TEST_F(Calibrate, FindsPlacesFromARoughGuessAndKeepsTheRestOfTheFile) {
+  const Outcome outcome = calibrate("--reference " + path("711/reference.ply") + " --out " + path("near.json"));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+  expect_true_places("near.json");
+  const auto site = nlohmann::json::parse(std::ifstream(path("near.json")));
+  for (const auto& lidar : site["global_lidars"]) EXPECT_EQ(lidar["note"], "by the door");
+}
+
+TEST_F(Calibrate, FindsPlacesWithoutAGuess) {
+  const Outcome outcome =
+      calibrate("--initial none --reference " + path("711/reference.ply") + " --out " + path("none.json"));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+  expect_true_places("none.json");
+}
+
+TEST_F(Calibrate, TrustsNothingInAnotherRoomAndWritesNothing) {
+  const Outcome outcome =
+      calibrate("--reference " + path("712/reference.ply") + " --out " + path("wrong.json"));
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("no"));
+  EXPECT_FALSE(fs::exists(path("wrong.json")));
+}
+
+TEST_F(Calibrate, NamesTheFileThatIsWrong) {
+  const Outcome outcome = calibrate("--reference " + path("no.ply") + " --out " + path("x.json"));
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("no.ply"));
+  EXPECT_FALSE(fs::exists(path("x.json")));
+}
+
+}  // namespace
+}  // namespace liloc

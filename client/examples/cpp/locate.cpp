@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
     if (const auto pushed = client.push_depth(depth_mm.data(), width, height, stamp_ns); !pushed)
       std::fprintf(stderr, "%s\n", pushed.error().c_str());
   }
-  client.stop();
+  if (const auto stopped = client.stop(); !stopped) std::fprintf(stderr, "%s\n", stopped.error().c_str());
   if (const std::string problem = client.stats().problem; !problem.empty())
     std::fprintf(stderr, "%s\n", problem.c_str());
 }

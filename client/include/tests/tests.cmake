@@ -42,8 +42,9 @@ add_test(NAME client_examples_build COMMAND ${CMAKE_CTEST_COMMAND}
   --build-options -DCMAKE_PREFIX_PATH=${installed}
     -DCMAKE_C_COMPILER=${CMAKE_C_COMPILER} -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
     -DCMAKE_C_FLAGS=${sanitize} -DCMAKE_CXX_FLAGS=${sanitize})
-add_test(NAME client_example_cpp COMMAND ${examples}/tests/locate_test.py 179 ${examples_built}/locate_cpp)
-add_test(NAME client_example_c COMMAND ${examples}/tests/locate_test.py 180 ${examples_built}/locate_c)
+find_program(LILOC_NUMPY_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED) # Debian's, which has NumPy
+add_test(NAME client_example_cpp COMMAND ${LILOC_NUMPY_PYTHON} ${examples}/tests/locate_test.py 179 ${examples_built}/locate_cpp)
+add_test(NAME client_example_c COMMAND ${LILOC_NUMPY_PYTHON} ${examples}/tests/locate_test.py 180 ${examples_built}/locate_c)
 set_tests_properties(client_examples_build PROPERTIES FIXTURES_SETUP client_examples)
 set_tests_properties(client_example_cpp client_example_c PROPERTIES FIXTURES_REQUIRED client_examples TIMEOUT 60
   ENVIRONMENT "ANSWERING_SERVER=$<TARGET_FILE:client_answering_server>")

@@ -55,7 +55,7 @@ TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
     const Outcome outcome = liloc(given);
     expect_complaint(outcome, 2, says);
     EXPECT_THAT(outcome.out,
-                HasSubstr("commands are demo, load, replay, sim, align, doctor; see liloc --help"));
+                HasSubstr("commands are demo, load, replay, sim, align, calibrate, doctor; see liloc --help"));
   }
   expect_complaint(liloc("align a b --one --two"), 2, "not expected: '--one' '--two'");
   expect_complaint(liloc("align a b --voxel nan"), 2, "--voxel: is 'nan'; give a number in 0.005..1");
@@ -120,7 +120,7 @@ TEST_F(CommandLine, DoctorFailsForALidarThatCannotBeUsedAndPrintsNothingForged) 
 
 TEST_F(CommandLine, ALiveSimulationThatFallsBehindLeavesImagesOutAndGoesOn) {
   const Outcome slow = liloc(
-      "sim --live --domain 149 --seed 3 --seconds 4 --lidars 12 --lidar-rate 30 --image-width 640 "
+      "sim --live --domain 149 --seed 3 --seconds 4 --lidars 8 --lidar-rate 30 --image-width 640 "
       "--image-height 480 "
       "--threads 1");
   EXPECT_EQ(slow.exit_code, 0) << slow.out;

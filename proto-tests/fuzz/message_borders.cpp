@@ -80,8 +80,11 @@ nav_msgs_msg_dds__Odometry_ sample_odometry() {
 std::vector<Border> message_borders() {
   const SpotRequest request = wire::sample_request();
   const wire::RequestSample request_sample = wire::to_wire(request, 1).value();
-  const wire::ServerStatus status{
-      "edge1", 1, 2.5, {{"ceiling0", wire::LidarState::slow, 3.5, 4, 5, "step"}}, 6, 7, 8, 9, 10};
+  const wire::ServerStatus status{"edge1", 1,
+                                  2.5,     {{"ceiling0", wire::LidarState::slow, 3.5, 4, 5, "step"}},
+                                  6,       7,
+                                  8,       9,
+                                  10,      {CloudCodec::draco}};
   const wire::StatusSample status_sample = wire::to_wire(status);
   const DepthImage image{kStampNs, 4, 2, {1, 2, 3, 0, 5000, 65535, 7, 8}};
   const Cloud cloud{{{1, 2, 3}, {4, 5, 6}}, {}};

@@ -67,8 +67,8 @@ TEST_P(EachBorder, StandsUpToChangedSeeds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, EachBorder, testing::Range<std::size_t>(0, borders().size()),
-                         [](const auto& info) {
-                           std::string name = borders().at(info.param).name;
+                         [](const auto& of) {
+                           std::string name = borders().at(of.param).name;
                            std::ranges::replace(name, '-', '_');
                            return name;
                          });

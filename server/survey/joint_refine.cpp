@@ -39,7 +39,8 @@ class Normals {
         options_(options),
         H_(Eigen::MatrixXd::Zero(size(), size())),
         g_(Eigen::VectorXd::Zero(size())) {
-    for (JointLidar& lidar : lidars_) lidar.residual_m = lidar.pairs = 0;
+    for (JointLidar& lidar : lidars_)
+      if (!lidar.left_out) lidar.residual_m = lidar.pairs = 0;
   }
 
   void add_scan(const Reference& reference, std::size_t i, const Cloud& cloud, double distance_m) {
@@ -81,6 +82,7 @@ class Normals {
       const Row own = x.segment<kUnknowns>(at(i));
       JointLidar& lidar = lidars_[i];
       if (!own.allFinite()) continue;
+      if (lidar.left_out) continue;
       if (lidar.pairs > 0) lidar.residual_m = std::sqrt(lidar.residual_m / lidar.pairs);
       lidar.T_map_sensor.linear() = so3_exp(own.head<3>()) * lidar.T_map_sensor.linear();
       lidar.T_map_sensor.translation() += own.segment<3>(3);
@@ -114,10 +116,11 @@ class Normals {
     for (std::size_t i = 0; i < lidars_.size(); ++i) {
       const JointLidar& lidar = lidars_[i];
       Row held = Row::Constant(1e-3);
-      const bool errors = options_.depth_errors && !lidar.fixed;
+      // Of LiDARs alone one keeps its scale: all smaller together fit each other better.
+      const bool errors = options_.depth_errors && !lidar.left_out && !lidar.fixed;
       held[6] = errors ? unit / (options_.scale_sd * options_.scale_sd) : kFixed;
       held[7] = errors ? unit / (options_.bias_sd_m * options_.bias_sd_m) : kFixed;
-      if (lidar.fixed) held.head<6>().setConstant(kFixed);
+      if (lidar.fixed || lidar.left_out) held.head<6>().setConstant(kFixed);
       block(i, i).diagonal() += held;
       if (errors) {
         g_[at(i) + 6] += held[6] * lidar.error.scale;
@@ -128,12 +131,14 @@ class Normals {
 
   void tell_doubt(const Eigen::LDLT<Eigen::MatrixXd>& solver) {
     const double unit = kAlike * kPairSd_m * kPairSd_m;
-    for (std::size_t i = 0; i < lidars_.size(); ++i)
-      for (const Eigen::Index k : {6, 7}) {
-        const Eigen::VectorXd column = solver.solve(Eigen::VectorXd::Unit(size(), at(i) + k));
-        (k == 6 ? lidars_[i].error_sd.scale : lidars_[i].error_sd.bias_m) =
-            std::sqrt(std::max(0.0, unit * column[at(i) + k]));
-      }
+    for (std::size_t i = 0; i < lidars_.size(); ++i) {
+      Eigen::MatrixXd own = Eigen::MatrixXd::Zero(size(), kUnknowns);
+      own.middleRows<kUnknowns>(at(i)).setIdentity();
+      const Block covariance = unit * solver.solve(own).middleRows<kUnknowns>(at(i));
+      lidars_[i].covariance = covariance.topLeftCorner<6, 6>();
+      lidars_[i].error_sd = {std::sqrt(std::max(0.0, covariance(6, 6))),
+                             std::sqrt(std::max(0.0, covariance(7, 7)))};
+    }
   }
 
   static constexpr double kFixed = 1e12;
@@ -155,7 +160,7 @@ std::vector<Placed> placed(const std::vector<JointLidar>& lidars, const JointOpt
 
 }  // namespace
 
-bool refine_together(const Reference* reference, std::vector<JointLidar>* lidars, const JointOptions& options) {
+void refine_together(const Reference* reference, std::vector<JointLidar>* lidars, const JointOptions& options) {
   constexpr double kSmallStep = 5e-5;  // m, rad
   std::vector<Placed> clouds = placed(*lidars, options);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
@@ -165,13 +170,13 @@ bool refine_together(const Reference* reference, std::vector<JointLidar>* lidars
     if (options.depth_errors) clouds = placed(*lidars, options);
     Normals normals(lidars, options);
     for (std::size_t i = 0; i < lidars->size(); ++i) {
+      if ((*lidars)[i].left_out) continue;
       if (reference != nullptr) normals.add_scan(*reference, i, clouds[i].cloud, distance_m);
       for (std::size_t j = 0; j < lidars->size(); ++j)
-        if (i != j) normals.add_two(i, j, clouds, distance_m);
+        if (i != j && !(*lidars)[j].left_out) normals.add_two(i, j, clouds, distance_m);
     }
-    if (normals.step() < kSmallStep && share >= 1.0) return true;
+    if (normals.step() < kSmallStep && share >= 1.0) return;
   }
-  return false;
 }
 
 }  // namespace liloc::survey

@@ -20,15 +20,19 @@ struct JointOptions {
 struct JointLidar {
   const Cloud* cloud = nullptr;  ///< LidarScan::cloud; outlives the call
   Pose T_map_sensor = Pose::Identity();
-  bool fixed = false;  ///< it holds the others where it is
-  DepthError error;    ///< estimated where JointOptions::depth_errors
-  DepthError error_sd;
+  bool fixed = false;     ///< it holds the others where it is
+  bool left_out = false;  ///< it stays where it is, and holds nobody
+  // Where JointOptions::depth_errors:
+  DepthError error, error_sd;
+  /// Of the pose, [rotation about the sensor; shift] in the map's axes, whatever scale and bias of all LiDARs
+  /// may be: pixels of one sensor err together, of which residuals know nothing.
+  Matrix6d covariance = Matrix6d::Zero();
   double residual_m = 0;  ///< RMSE along the normals, over its pairs
   int pairs = 0;          ///< of the last iteration, with the scan and with others
 };
 
 /// Gauss-Newton over all poses at once, point to plane. `reference` null: LiDARs alone, of which one is fixed.
-/// True when the last step was small. Pure.
-bool refine_together(const Reference* reference, std::vector<JointLidar>* lidars, const JointOptions& options);
+/// Pure.
+void refine_together(const Reference* reference, std::vector<JointLidar>* lidars, const JointOptions& options);
 
 }  // namespace liloc::survey

@@ -1,9 +1,6 @@
 #include "server/survey/trust.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
-
+#include "common/geometry/pose_estimate.hpp"
 #include "common/geometry/voxel.hpp"
 #include "common/registration/refine/pose_covariance.hpp"
 #include "common/registration/refine/refine.hpp"
@@ -16,12 +13,6 @@ constexpr float kSight_m = 0.03F;   // a conflict is twice that, and 2 % of the 
 constexpr double kMedium_m = 0.08;  // one point in four: neighbours err alike
 constexpr int kViewFactor = 2;
 constexpr double kFarthest_m = 8.5;  // as DepthOptions::max_range_m
-
-/// The largest standard deviation over the directions of a 3x3 block.
-double largest_sd(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, axes.eigenvalues().maxCoeff()));
-}
 
 }  // namespace
 
@@ -41,9 +32,9 @@ PoseEvidence evidence_of(const Target& rest, const LidarScan& scan, const Pose& 
   Query query;
   query.cloud = scan.cloud;
   query.medium = voxel_downsample(scan.cloud, kMedium_m);
-  const Matrix6d covariance = pose_covariance(rest, query, T_map_sensor);
-  evidence.sd_rad = largest_sd(covariance.topLeftCorner<3, 3>());
-  evidence.sd_m = largest_sd(covariance.bottomRightCorner<3, 3>());
+  const PoseEstimate pose{T_map_sensor, pose_covariance(rest, query, T_map_sensor)};
+  evidence.sd_rad = pose.sd_rad();
+  evidence.sd_m = pose.sd_m();
   return evidence;
 }
 

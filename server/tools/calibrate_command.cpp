@@ -22,7 +22,8 @@ struct CalibrateArguments {
 };
 
 constexpr std::size_t kFewestFrames = 5;
-constexpr int kAveraged = 120;  // frames in a pixel's mean: what remains of 1 cm of noise is a millimetre
+constexpr int kMostFrames = 120;    // in a pixel's mean: what remains of 1 cm of noise is a millimetre
+constexpr double kFarthest = 1000;  // m or degrees, of a rough start: far beyond any site
 
 /// The mean of what stands still before a LiDAR.
 Result<DepthImage> standing(const LidarRecording& lidar, const Camera& camera, std::size_t most_frames,
@@ -31,7 +32,7 @@ Result<DepthImage> standing(const LidarRecording& lidar, const Camera& camera, s
     return fail("{}: {} frames, of at least {}; record for some seconds", lidar.info.id, lidar.depth.size(),
                 kFewestFrames);
   BackgroundOptions options;
-  options.most_averaged = kAveraged;
+  options.most_averaged = kMostFrames;
   Background background(camera, options);
   for (std::size_t i = 0; i < std::min(most_frames, lidar.depth.size()); ++i) {
     const auto image = read_depth(lidar.depth[i], camera);
@@ -93,6 +94,9 @@ Result<survey::CalibrationOptions> starts_of(const CalibrateArguments& arguments
   for (const auto& [id, x, y, z, yaw] : arguments.near) {
     const auto lidar = std::ranges::find(site->global_lidars, id, &GlobalLidar::id);
     if (lidar == site->global_lidars.end()) return fail("--near {}: the site has no such LiDAR", id);
+    for (const double value : {x, y, z, yaw})
+      if (!(std::abs(value) <= kFarthest))
+        return fail("--near {}: is '{}'; give metres and degrees, -{}..{}", id, value, kFarthest, kFarthest);
     lidar->T_map_sensor = looking_down(x, y, z, yaw);
     options.search[static_cast<std::size_t>(lidar - site->global_lidars.begin())] = false;
   }
@@ -141,7 +145,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   command->add_option("--near", arguments->near,
                       "ID X Y Z YAW: rough start of a LiDAR that looks down, in m and deg; may be repeated");
   command->add_option("--frames", arguments->most_frames, "Frames of each LiDAR to average")
-      ->check(command::in_range(5, 10'000))
+      ->check(command::in_range(5, kMostFrames))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Of all randomness")
       ->check(command::any_seed())

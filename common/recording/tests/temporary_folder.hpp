@@ -8,12 +8,13 @@
 
 namespace liloc {
 
-/// A folder of this test alone, removed with everything in it.
+/// A folder of this test alone, or of its suite where that sets up, removed with everything in it.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
+    const auto* suite = testing::UnitTest::GetInstance()->current_test_suite();
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string("liloc_") + test->test_suite_name() + "_" + test->name();
+    std::string name = std::string("liloc_") + suite->name() + (test ? std::string("_") + test->name() : "");
     for (char& c : name)
       if (c == '/') c = '_';
     path_ = std::filesystem::temp_directory_path() / (name + "_" + std::to_string(::getpid()));

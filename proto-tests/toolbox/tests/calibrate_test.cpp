@@ -1,12 +1,13 @@
 // `liloc calibrate` on simulated sites, from places that are off: what it finds, and what it does not trust.
 #include <gmock/gmock.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/recording/recording.hpp"
+#include "common/recording/tests/temporary_folder.hpp"
 #include "common/testing/program.hpp"
 
 namespace liloc {
@@ -23,8 +24,7 @@ Outcome liloc(const std::string& arguments) {
 class Calibrate : public testing::Test {
  public:
   static void SetUpTestSuite() {
-    std::string pattern = (fs::temp_directory_path() / "liloc_calibrate_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
+    folder_ = std::make_unique<TemporaryFolder>();
     for (const char* seed : {"711", "712"})
       ASSERT_EQ(liloc("sim " + path(seed) + " --seed " + seed + " --seconds 3").exit_code, 0);
     nlohmann::json site = nlohmann::json::parse(std::ifstream(path("711/site.json")));
@@ -40,10 +40,10 @@ class Calibrate : public testing::Test {
     }
     std::ofstream(path("off.json")) << site;
   }
-  static void TearDownTestSuite() { fs::remove_all(folder_); }
+  static void TearDownTestSuite() { folder_.reset(); }
 
  protected:
-  static std::string path(const std::string& name) { return (folder_ / name).string(); }
+  static std::string path(const std::string& name) { return (folder_->path() / name).string(); }
   static Outcome calibrate(const std::string& rest) {
     return liloc("calibrate " + path("711") + " --site " + path("off.json") + " --frames 15 " + rest);
   }
@@ -52,12 +52,12 @@ class Calibrate : public testing::Test {
     ASSERT_TRUE(found && truth);
     for (std::size_t i = 0; i < truth->global_lidars.size(); ++i) {
       const Pose &T = found->global_lidars[i].T_map_sensor, &T_true = truth->global_lidars[i].T_map_sensor;
-      EXPECT_LT(distance_m(T, T_true), 0.01) << i;
-      EXPECT_LT(degrees(angle_between_rad(T, T_true)), 0.3) << i;
+      EXPECT_LT(distance_m(T, T_true), 0.005) << i;
+      EXPECT_LT(degrees(angle_between_rad(T, T_true)), 0.1) << i;
     }
   }
 
-  inline static fs::path folder_;
+  inline static std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(Calibrate, FindsPlacesFromARoughGuessAndKeepsTheRestOfTheFile) {
@@ -81,6 +81,24 @@ TEST_F(Calibrate, TrustsNothingInAnotherRoomAndWritesNothing) {
   EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
   EXPECT_THAT(outcome.out, HasSubstr("no"));
   EXPECT_FALSE(fs::exists(path("wrong.json")));
+}
+
+TEST_F(Calibrate, RefusesRoughStartsThatAreNone) {
+  for (const char* start : {"nowhere 1 2 3 4", "ceiling0 nan 2 3 4", "ceiling0 1 1e30 3 4"}) {
+    const Outcome outcome = calibrate("--near " + std::string(start) + " --out " + path("x.json"));
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+    EXPECT_THAT(outcome.out, HasSubstr("--near"));
+  }
+}
+
+TEST_F(Calibrate, WithoutAScanTrustsTheOthersNoMoreThanTheFirst) {
+  const Outcome outcome = calibrate("--json --out " + path("alone.json"));
+  const auto told = nlohmann::json::parse(outcome.out.substr(outcome.out.find('{')), nullptr, false);
+  ASSERT_FALSE(told.is_discarded()) << outcome.out;
+  const auto& lidars = told.at("lidars");
+  EXPECT_LT(lidars.at(0).at("moved_m").get<double>(), 1e-9);
+  const bool first = lidars.at(0).at("doubt") == "";
+  for (const auto& lidar : lidars) EXPECT_TRUE(first || lidar.at("doubt") != "") << lidar;
 }
 
 TEST_F(Calibrate, NamesTheFileThatIsWrong) {

@@ -142,6 +142,7 @@ class Run {
       if (progress) progress(std::max(0.0, now_s / (clock_.to_s + kAfter_s)));
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
+    if (frozen && !thawed) kill(server_->pid(), SIGCONT);  // it would not hear that it is to stop
     return {};
   }
 

@@ -38,6 +38,8 @@ Status LoadOptions::validated() const {
     if (!ok) return ok;
   if (churn_s > 0 && churn_s < 2) return fail("load: --churn is {}, must be 0 or 2 s and more", churn_s);
   if (kidnap_s > 0 && kidnap_s < 1) return fail("load: --kidnap is {}, must be 0 or 1 s and more", kidnap_s);
+  if (freeze_s > seconds / 2)
+    return fail("load: --freeze is {}, must be half of --seconds at most: it begins in the middle", freeze_s);
   if (freeze_s > 0 && domain >= 0)
     return fail("load: --freeze stops a server that this run started; leave --domain out");
   if (domain < 0 && !server.empty())

@@ -27,10 +27,10 @@ void count(const RequestRow& row, LoadReport& report) {
 void add_latencies(const std::vector<RequestRow>& rows, LoadReport& report) {
   std::vector<double> all, tracked, lags;
   for (const RequestRow& row : rows) {
-    if (row.outcome == Outcome::unsent) continue;
-    const double ms = row.outcome == Outcome::unanswered ? kTimeout_ms : row.latency_ms;
+    // What the server's silence kept from being sent has waited as long as what it left unanswered.
+    const double ms = row.outcome <= Outcome::unanswered ? kTimeout_ms : row.latency_ms;
     all.push_back(ms);
-    lags.push_back(row.lag_ms);
+    if (row.outcome != Outcome::unsent) lags.push_back(row.lag_ms);
     if (!row.of_lost) tracked.push_back(ms);
   }
   if (all.empty()) return;
@@ -39,7 +39,7 @@ void add_latencies(const std::vector<RequestRow>& rows, LoadReport& report) {
   report.p99_ms = quantile(all, 0.99);
   report.p999_ms = quantile(all, 0.999);
   report.max_ms = quantile(all, 1);
-  report.lag_ms_p99 = quantile(lags, 0.99);
+  if (!lags.empty()) report.lag_ms_p99 = quantile(lags, 0.99);
   if (!tracked.empty()) report.tracked_p99_ms = quantile(tracked, 0.99);
 }
 

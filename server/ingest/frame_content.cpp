@@ -10,6 +10,10 @@
 namespace liloc {
 namespace {
 
+// One thread takes the frames of all LiDARs. Of over 20 000 pixels one in seven tells as much; seven shares no
+// factor with the width of any usual image, so that no column is left out.
+constexpr std::size_t kStep = 7, kEnough = 20'000;
+
 FrameContent content_of(const std::vector<float>& depths_m, std::size_t pixels) {
   FrameContent content;
   if (depths_m.empty() || pixels == 0) return content;
@@ -28,10 +32,12 @@ FrameContent content_of(const std::vector<float>& depths_m, std::size_t pixels) 
 
 FrameContent content_of(const DepthImage& image, const Camera& camera) {
   std::vector<float> depths_m;
-  depths_m.reserve(image.units.size());
-  for (const std::uint16_t units : image.units)
-    if (is_return(units)) depths_m.push_back(static_cast<float>(units * camera.depth_scale_m));
-  return content_of(depths_m, image.units.size());
+  const std::size_t step = image.units.size() > kEnough ? kStep : 1;
+  depths_m.reserve(image.units.size() / step + 1);
+  for (std::size_t i = 0; i < image.units.size(); i += step)
+    if (is_return(image.units[i]))
+      depths_m.push_back(static_cast<float>(image.units[i] * camera.depth_scale_m));
+  return content_of(depths_m, (image.units.size() + step - 1) / step);
 }
 
 FrameContent content_of(const Cloud& cloud_sensor, const Camera& camera) {

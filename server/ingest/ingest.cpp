@@ -171,11 +171,14 @@ void Ingest::report_changes() {
       const std::scoped_lock lock(mutex_);
       health = assess(i, now);
     }
-    if (health.clock_corrected && !lidar.correction_reported && lidar.clock_lines.pass(now))
+    if (!health.clock_corrected) {
+      lidar.correction_reported = false;
+    } else if (!lidar.correction_reported && lidar.clock_lines.pass(now)) {
+      lidar.correction_reported = true;
       log::warning("{}: its clock is {:.2f} s {} the site's: its stamps are corrected; set it by NTP or PTP",
                    health.id, std::abs(health.clock_offset_s),
                    health.clock_offset_s > 0 ? "ahead of" : "behind");
-    lidar.correction_reported = health.clock_corrected;
+    }
     if (health.state == lidar.reported) continue;
     // Whoever sends under a LiDAR's name can make it change with every frame: what is held back shows when it
     // stays.

@@ -14,7 +14,8 @@ using namespace std::chrono_literals;
 constexpr StampNs kAgree = from_ms(300);
 constexpr StampNs kNearWall = from_ms(10'000);  // hosts without NTP drift by less in a month
 constexpr StampNs kSteady = from_ms(50);        // what delays of frames leave of a constant offset
-constexpr auto kProof = 2s;                     // so long an offset has to hold before it is taken for constant
+constexpr auto kProof = 2s;                     // so long an offset has to hold before it is taken for steady
+constexpr StampNs kFollow = 64;  // frames: slower than delays vary, quicker than any oscillator drifts
 
 StampNs steady_ns(SiteClocks::Time time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
@@ -68,6 +69,7 @@ void SiteClocks::judge(Lidar& lidar, StampNs ahead_ns, Time at) {
     lidar.steady_ns = ahead_ns;
     lidar.offset.corrected = false;
   }
+  lidar.steady_ns += (ahead_ns - lidar.steady_ns) / kFollow;
   if (at - *lidar.steady_since >= kProof) lidar.offset.corrected = true;
   if (lidar.offset.corrected) lidar.offset.ahead_ns = lidar.steady_ns;
   lidar.offset.left_out = !lidar.offset.corrected;

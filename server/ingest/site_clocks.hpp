@@ -18,7 +18,7 @@ struct ClockOffset {
 
 /// The site's clock is that of the largest group of LiDARs whose clocks agree; among groups of one size, the
 /// one nearest to this host's clock if that is within ten seconds, else the one that was gone by before.
-/// Whoever is off by a constant is corrected, whoever else is off is left out. Not thread-safe.
+/// Whoever is off steadily is corrected, drift and all, whoever else is off is left out. Not thread-safe.
 class SiteClocks {
  public:
   using Time = StampClock::Time;
@@ -35,8 +35,8 @@ class SiteClocks {
   struct Lidar {
     StampClock clock;
     ClockOffset offset;
-    std::optional<Time> steady_since;  ///< since when `steady_ns` has held
-    StampNs steady_ns = 0;
+    std::optional<Time> steady_since;  ///< since when it has not jumped
+    StampNs steady_ns = 0;             ///< mean of late: clocks drift
   };
   void choose(Time at, StampNs wall_ns);
   void judge(Lidar& lidar, StampNs ahead_ns, Time at);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace liloc {
 namespace {
 
@@ -107,6 +109,22 @@ TEST(SiteClocks, AClockThatIsMendedPassesAsItIs) {
 TEST(SiteClocks, NothingHeardIsNoClock) {
   SiteClocks clocks(2);
   EXPECT_FALSE(clocks.now(SiteClocks::Time{1000s}));
+}
+
+/// 50 parts in a million: a cheap oscillator.
+TEST(SiteClocks, ACorrectedClockThatDriftsIsFollowed) {
+  Ceiling ceiling({0, 37, 0, 0});
+  ceiling.run(3);
+  int left_out = 0;
+  for (int i = 0; i < 36'000; ++i) {  // an hour
+    ceiling.off[1] += 0.1 * 50e-6;
+    ceiling.frame();
+    left_out += ceiling.last[1] ? 0 : 1;
+    if (ceiling.last[1]) {
+      ASSERT_LT(std::abs(to_seconds(*ceiling.last[1] - *ceiling.last[0])), 0.01) << i;
+    }
+  }
+  EXPECT_EQ(left_out, 0);
 }
 
 }  // namespace

@@ -81,9 +81,11 @@ struct Localizer::Impl {
   void note_trouble(const std::string& client_id, const Spot& spot, SpotReply* reply) {
     reply->text += "; " + spot.trouble();
     const std::scoped_lock lock(mutex);
-    if (!troubled.insert(client_id).second) return;
-    if (const auto held = troubles.pass(client_id, std::chrono::steady_clock::now()))
-      log::warning("{}: {}{}", client_id, spot.trouble(), held_back(*held));
+    if (troubled.contains(client_id)) return;
+    const auto held = troubles.pass(client_id, std::chrono::steady_clock::now());
+    if (!held) return;
+    troubled.insert(client_id);
+    log::warning("{}: {}{}", client_id, spot.trouble(), held_back(*held));
   }
 
   /// Who sends what cannot be handled sends it again.

@@ -36,7 +36,7 @@ void Desk::submit(wire::Arrival arrival) {
     stopping = stopping_;
     if (!stopping && !sessions_.admit(arrival)) arrival.problem = Reason::rate_limit;
     if (!stopping && arrival.problem == Reason::none) {
-      has_twin = sessions_.has_twin(arrival.from, arrival.at);
+      has_twin = sessions_.has_twin(arrival.from);
       begins = sessions_.begins(arrival.from);
       late = sessions_.is_late(arrival.from, arrival.request.seq);
     }
@@ -47,8 +47,9 @@ void Desk::submit(wire::Arrival arrival) {
                   fmt::format("more than {} requests a second", options_.max_rate_hz));
   if (arrival.problem != Reason::none) return refuse(arrival, arrival.problem, arrival.text);
   if (has_twin)
-    log::warning("two devices ask as {}: neither is located by more than one spot; give each an id of its own",
-                 arrival.from.client_id);
+    if (const auto held = may_say(twins_, arrival.from.client_id))
+      log::warning("two devices ask as {}: neither is located by more than one spot; give each its own id{}",
+                   arrival.from.client_id, held_back(*held));
   if (late) return refuse(arrival, Reason::late, "a request as new as this was answered already");
   if (begins && backend_.forget) backend_.forget(arrival.from.client_id);
 
@@ -138,7 +139,7 @@ void Desk::work_on(const wire::Arrival& arrival) {
   try {
     reply = backend_.locate(arrival.request);
   } catch (const std::exception& error) {  // a worker must not take the server with it
-    if (const auto held = may_say(arrival.from.client_id + " failed"))
+    if (const auto held = may_say(failures_, arrival.from.client_id))
       log::error("request {} of {}: {}{}", arrival.request.seq, arrival.from.client_id, error.what(),
                  held_back(*held));
     reply = refusal(arrival.request, Reason::not_found, fmt::format("internal error: {}", error.what()));
@@ -155,13 +156,13 @@ void Desk::work_on(const wire::Arrival& arrival) {
   finish(arrival, std::move(reply));
 }
 
-std::optional<std::uint64_t> Desk::may_say(const std::string& of) {
+std::optional<std::uint64_t> Desk::may_say(SourceLimit& lines, const std::string& of) {
   const std::scoped_lock lock(mutex_);
-  return lines_.pass(of, std::chrono::steady_clock::now());
+  return lines.pass(of, std::chrono::steady_clock::now());
 }
 
 void Desk::refuse(const wire::Arrival& arrival, Reason reason, std::string text) {
-  if (const auto held = may_say(fmt::format("{} {}", arrival.from.client_id, name_of(reason))))
+  if (const auto held = may_say(refusals_, fmt::format("{} {}", arrival.from.client_id, name_of(reason))))
     log::debug("request {} of {} refused: {}: {}{}", arrival.request.seq, arrival.from.client_id,
                name_of(reason), text, held_back(*held));
   finish(arrival, refusal(arrival.request, reason, std::move(text)));

@@ -53,7 +53,7 @@ class Desk {
   [[nodiscard]] std::optional<wire::Arrival> take_waiting(const std::string& client_id);
   void tell(Stage stage, std::chrono::steady_clock::time_point since) const;
   void work_on(const wire::Arrival& arrival);
-  [[nodiscard]] std::optional<std::uint64_t> may_say(const std::string& of);  ///< see SourceLimit
+  [[nodiscard]] std::optional<std::uint64_t> may_say(SourceLimit& lines, const std::string& of);
   void refuse(const wire::Arrival& arrival, Reason reason, std::string text);
   void finish(const wire::Arrival& arrival, SpotReply reply);
 
@@ -65,7 +65,7 @@ class Desk {
   Sessions sessions_;
   std::deque<wire::Arrival> held_;
   WaitingLine line_;
-  SourceLimit lines_;  // by client and reason
+  SourceLimit refusals_, failures_, twins_;  // lines of the log, by client
   bool stopping_ = false;
   std::atomic<std::uint64_t> answered_ = 0, verified_ = 0, refused_ = 0;
   std::vector<std::thread> workers_;

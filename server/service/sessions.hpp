@@ -54,14 +54,10 @@ class Sessions {
     return true;
   }
   /// True where a run that was not the last one of its client goes on: two devices have one id. To be asked
-  /// before `begins`; at most once in ten seconds for a client, so that it can be told each time.
-  [[nodiscard]] bool has_twin(const wire::Sender& from, std::chrono::steady_clock::time_point now) {
+  /// before `begins`.
+  [[nodiscard]] bool has_twin(const wire::Sender& from) const {
     const Run* run = run_of(from);
-    const auto client = clients_.find(from.client_id);
-    if (run == nullptr || !run->last_answered || client == clients_.end()) return false;
-    if (is_current(from) || now < client->second.quiet_until) return false;
-    client->second.quiet_until = now + std::chrono::seconds(10);
-    return true;
+    return run != nullptr && run->last_answered && clients_.contains(from.client_id) && !is_current(from);
   }
   /// False once the client has left, or begun anew.
   [[nodiscard]] bool is_current(const wire::Sender& from) const {
@@ -114,8 +110,7 @@ class Sessions {
 
  private:
   struct Client {
-    std::uint64_t publication = 0, session = 0;  ///< of the run that was heard last
-    std::chrono::steady_clock::time_point quiet_until{};
+    std::uint64_t publication = 0, session = 0;    ///< of the run that was heard last
     std::optional<SpotStatus> status;              ///< of the last answer
     bool known = false;                            ///< verified once, by whichever run
     std::optional<std::uint32_t> tracked_segment;  ///< of odometry, whose last answer was verified

@@ -38,7 +38,8 @@ class WaitingLine {
   static constexpr double kSearchShare = 0.25;
   /// Strangers wait so much longer than known devices that search.
   static constexpr Duration kStrangerWait = std::chrono::seconds(2);
-  /// Most work that searches are owed, so that an idle hour does not become a busy minute.
+  /// Most work that searches are owed, or have had before their time, so that an idle hour does not become a
+  /// busy minute.
   static constexpr Duration kMostOwed = std::chrono::milliseconds(200);
   /// About what one takes: owed less, a search waits.
   static constexpr Duration kSearch = std::chrono::milliseconds(40);
@@ -61,14 +62,16 @@ class WaitingLine {
     const auto tracked = next(false), search = next(true);
     const bool searching = search != waiting_.end() && (tracked == waiting_.end() || owed_ >= kSearch);
     auto begun = taken(searching ? search : tracked);
-    if (begun) in_work_.insert(begun->arrival.from.client_id);
+    if (!begun) return begun;
+    in_work_.insert(begun->arrival.from.client_id);
+    if (begun->searches()) owed_ -= kSearch;  // at once: other workers ask before it ends
     return begun;
   }
   /// Its work took so long.
   void end(const Waiting& done, Duration took) {
     in_work_.erase(done.arrival.from.client_id);
     const auto earned = std::chrono::duration_cast<Duration>(took * (kSearchShare / (1 - kSearchShare)));
-    owed_ = std::clamp(done.searches() ? owed_ - took : owed_ + earned, Duration::zero(), kMostOwed);
+    owed_ = std::clamp(done.searches() ? owed_ + kSearch - took : owed_ + earned, -kMostOwed, kMostOwed);
   }
 
   [[nodiscard]] std::size_t size() const { return waiting_.size(); }

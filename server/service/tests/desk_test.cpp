@@ -375,6 +375,40 @@ TEST(WaitingLine, SearchesGetTheirShareThoughTrackedDevicesNeverCease) {
   EXPECT_LT(searching, 6s);
 }
 
+TEST(WaitingLine, WorkersThatAskAtOnceDoNotAllBeginSearches) {
+  WaitingLine line(32);
+  for (int i = 0; i < 4; ++i) ASSERT_FALSE(line.push(waiting(fmt::format("lost{}", i), Standing::known)));
+  for (int i = 0; i < 31; ++i) {  // 124 ms of tracked work: one search of 40 ms is owed, and no second one
+    ASSERT_FALSE(line.push(waiting("busy", Standing::tracked)));
+    auto begun = line.begin();
+    ASSERT_TRUE(begun && !begun->searches());
+    line.end(*begun, 4ms);
+  }
+  int searching = 0;
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_FALSE(line.push(waiting(fmt::format("busy{}", i), Standing::tracked)));
+    searching += line.begin()->searches() ? 1 : 0;
+  }
+  EXPECT_EQ(searching, 1);
+}
+
+TEST(WaitingLine, LongSearchesGetNoMoreThanTheirShare) {
+  WaitingLine line(16);
+  std::chrono::milliseconds searching{0}, tracking{0};
+  ASSERT_FALSE(line.push(waiting("busy", Standing::tracked)));
+  ASSERT_FALSE(line.push(waiting("lost", Standing::known)));
+  while (tracking + searching < 20s) {
+    auto begun = line.begin();
+    ASSERT_TRUE(begun);
+    const auto took = begun->searches() ? 150ms : 4ms;
+    (begun->searches() ? searching : tracking) += took;
+    line.end(*begun, took);
+    ASSERT_FALSE(line.push(waiting(begun->arrival.from.client_id, begun->standing)));
+  }
+  EXPECT_GT(searching, 4s);
+  EXPECT_LT(searching, 6s);
+}
+
 TEST(WaitingLine, SearchesGetAllTheTimeThatNobodyElseWants) {
   WaitingLine line(16);
   for (int i = 0; i < 10; ++i) {

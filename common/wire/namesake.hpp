@@ -1,7 +1,9 @@
 #pragma once
 // Private to the room: whether another device asks under a client's id, told by the answers to it.
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 
 namespace liloc::wire {
 
@@ -15,20 +17,24 @@ class Namesake {
 
   /// To be asked of each reply to another session; true where that session still asks.
   [[nodiscard]] bool lives(std::uint64_t session, std::uint64_t seq, Time now) {
-    if (session != session_) {
-      session_ = session;
-      first_ = now;
-      seq_ = seq;
+    const auto known = std::ranges::find(runs_, session, &Run::session);
+    if (known == runs_.end()) {
+      runs_.push_back({session, seq, now});
+      if (runs_.size() > kRuns) runs_.pop_front();
       return false;
     }
-    const bool newer = seq > seq_;
-    if (newer) seq_ = seq;
-    return newer && now - first_ > kLeftover;
+    const bool newer = seq > known->seq;
+    if (newer) known->seq = seq;
+    return newer && now - known->first > kLeftover;
   }
 
  private:
-  std::uint64_t session_ = 0, seq_ = 0;
-  Time first_{};
+  static constexpr std::size_t kRuns = 8;  // a forger may make up any number; a cloned image makes a few
+  struct Run {
+    std::uint64_t session, seq;
+    Time first;
+  };
+  std::deque<Run> runs_;
 };
 
 }  // namespace liloc::wire

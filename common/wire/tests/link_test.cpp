@@ -311,6 +311,16 @@ TEST(Namesake, LivesWhenItGoesOnAskingAfterWhatWasLeft) {
   EXPECT_TRUE(namesake.lives(78, 11, start + 10s));
 }
 
+TEST(Namesake, LivesAmongSeveral) {
+  Namesake namesake;
+  const auto start = Namesake::Time{} + 1h;
+  int told = 0;
+  for (std::uint64_t seq = 1; seq <= 10; ++seq)
+    for (const std::uint64_t session : {77U, 78U})
+      told += namesake.lives(session, seq, start + seq * 1s) ? 1 : 0;
+  EXPECT_EQ(told, 14) << "from the fourth answer of each on";
+}
+
 TEST(Link, TwoDevicesOfOneIdAreToldToBoth) {
   constexpr int kDomain = 127;
   const Participant seat = Participant::create({.domain = kDomain, .role = Role::server}).value();

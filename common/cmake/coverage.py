@@ -24,8 +24,12 @@ def git(root, *arguments):
 
 
 def base_commit(root):
-    return (git(root, "rev-parse", "--verify", "--quiet", os.environ.get("LILOC_BASE", "") + "^{commit}")
-            or git(root, "merge-base", "HEAD", "origin/HEAD") or git(root, "rev-parse", "--verify", "--quiet", "HEAD~1"))
+    """As .ci/run has it."""
+    named = os.environ.get("LILOC_BASE", "")
+    if named:
+        return git(root, "rev-parse", "--verify", "--quiet", named + "^{commit}")
+    base = git(root, "merge-base", "HEAD", "origin/HEAD")
+    return base if base and base != git(root, "rev-parse", "HEAD") else git(root, "rev-parse", "--verify", "--quiet", "HEAD~1")
 
 
 def gcov(data):

@@ -40,7 +40,7 @@ class CommandLine : public testing::Test {
 };
 
 TEST_F(CommandLine, EverySubcommandHasHelp) {
-  for (const char* name : {"", "demo ", "load ", "replay ", "sim ", "align ", "doctor "}) {
+  for (const char* name : {"", "demo ", "load ", "replay ", "sim ", "align ", "calibrate ", "doctor "}) {
     const Outcome outcome = liloc(std::string(name) + "--help");
     EXPECT_EQ(outcome.exit_code, 0) << name;
     EXPECT_THAT(outcome.out, HasSubstr("Usage"));

@@ -6,7 +6,8 @@
 namespace liloc {
 namespace {
 
-constexpr int kProven = 4;   // frames in a surface that speaks for its neighbours; by hand
+// Frames in a surface that speaks for its neighbours, and for itself when something nearer hides it; by hand.
+constexpr int kProven = 4;
 constexpr int kCompany = 2;  // neighbours that move as well, or it is noise; by hand, DECISIONS.md
 
 constexpr float kHoldShare = 0.003F;  // of the depth; by hand, DECISIONS.md
@@ -137,6 +138,7 @@ Layers Background::learn(const DepthImage& image) {
       meter_.add_pair(image.units[i] * scale_m_, (image.units[i] - pixels_[i].last) * scale_m_);
     pixels_[i].last = image.units[i];
     kinds_[i] = learn(i, image.units[i], now_ms);
+    replaced_ += passing(i) && pixels_[i].shown != 0 ? 1 : 0;
   }
   measure();
   return separated(image);
@@ -167,7 +169,16 @@ Change Background::change() const {
   return share > options_.small_share ? Change::small : Change::none;
 }
 
-void Background::show(Pixel* pixel) const {
+bool Background::passing(std::size_t i) const {
+  return kinds_[i] == Kind::nearer && pixels_[i].averaged < kProven;
+}
+
+void Background::show(std::size_t i) {
+  Pixel* pixel = &pixels_[i];
+  if (passing(i)) {
+    pixel->shown = 0;
+    return;
+  }
   const auto units = static_cast<std::uint16_t>(std::lround(pixel->surface));
   const float hold = static_cast<float>(options_.hold_m / scale_m_) + kHoldShare * pixel->surface;
   const bool appeared = (units == 0) != (pixel->shown == 0),
@@ -181,9 +192,9 @@ DepthImage Background::surfaces() {
   replaced_ = 0;
   DepthImage image{last_ns_, width_, height_, {}};
   image.units.reserve(pixels_.size());
-  for (Pixel& pixel : pixels_) {
-    show(&pixel);
-    image.units.push_back(pixel.shown);
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    show(i);
+    image.units.push_back(pixels_[i].shown);
   }
   return image;
 }

@@ -31,8 +31,9 @@ struct Layers {
 
 /// The room before one ceiling LiDAR without what moves. The LiDAR stands still, so each pixel has a history of
 /// its own: a return nearer than its surface, or where there was none, belongs to something that came by, until
-/// it has stood there for a while; two farther ones show that the old surface is gone. A return that continues
-/// a neighbour's surface where there was none is more of that. Surfaces are running means, so their noise
+/// it has stood there for a while; two farther ones show that the old surface is gone. A surface of few frames
+/// that something nearer hides may be the same thing on its way: it is not shown until it is seen again. A
+/// return that continues a neighbour's surface where there was none is more of that. Surfaces are running means, so their noise
 /// shrinks with time. A sensor that often has no return keeps its surfaces for longer. Not thread-safe.
 class Background {
  public:
@@ -72,7 +73,9 @@ class Background {
   [[nodiscard]] float tolerance_of(float units) const;
   template <class Visit>
   void for_each_around(std::size_t i, const Visit& visit) const;
-  void show(Pixel* pixel) const;
+  /// Whether pixel i's surface may be somebody who has come nearer since.
+  [[nodiscard]] bool passing(std::size_t i) const;
+  void show(std::size_t i);
   [[nodiscard]] bool gained() const;
   void miss(Pixel* pixel, std::uint32_t now_ms);
   [[nodiscard]] float surprise_of_missing(const Pixel& pixel) const;  ///< -ln of its chance

@@ -1,5 +1,6 @@
 #include "server/app/server.hpp"
 
+#include <malloc.h>
 #include <systemd/sd-daemon.h>
 
 #include <algorithm>
@@ -15,7 +16,25 @@ namespace liloc {
 namespace {
 
 constexpr auto kPreparePeriod = std::chrono::milliseconds(50);  // a third of a ceiling frame's; by hand
+constexpr auto kTrimPeriod = std::chrono::seconds(10);          // a trim takes milliseconds; by hand
 constexpr auto kSavePeriod = std::chrono::minutes(1);  // so much is lost with a server that is killed; by hand
+
+/// Gives what clients that left have used back to the system; the C library would keep it.
+class HeapTrimmer {
+ public:
+  void see(std::size_t clients) {
+    most_ = std::max(most_, clients);
+    const auto now = std::chrono::steady_clock::now();
+    if (clients == most_ || now < next_) return;
+    malloc_trim(0);
+    most_ = clients;
+    next_ = now + kTrimPeriod;
+  }
+
+ private:
+  std::size_t most_ = 0;  ///< since the last trim
+  std::chrono::steady_clock::time_point next_;
+};
 
 StampNs wall_clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -157,9 +176,12 @@ void Server::keep_prepared(const std::stop_token& stop) {
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
   auto save_at = std::chrono::steady_clock::now() + kSavePeriod;
+  HeapTrimmer trimmer;
   while (!stop.stop_requested()) {
+    const std::size_t clients = service_->clients();
+    trimmer.see(clients);
     try {
-      if (service_->clients() > 0) global_cloud_.prepare();
+      if (clients > 0) global_cloud_.prepare();
     } catch (const std::exception& trouble) {  // the requests will say what is wrong with the room
       log::error("the room's indices were not made: {}", trouble.what());
     }

@@ -33,8 +33,9 @@ struct Layers {
 /// its own: a return nearer than its surface, or where there was none, belongs to something that came by, until
 /// it has stood there for a while; two farther ones show that the old surface is gone. A surface of few frames
 /// that something nearer hides may be the same thing on its way: it is not shown until it is seen again. A
-/// return that continues a neighbour's surface where there was none is more of that. Surfaces are running means, so their noise
-/// shrinks with time. A sensor that often has no return keeps its surfaces for longer. Not thread-safe.
+/// return that continues a neighbour's surface where there was none is more of that. Surfaces are running
+/// means, so their noise shrinks with time. A sensor that often has no return keeps its surfaces for longer.
+/// Not thread-safe.
 class Background {
  public:
   /// `known`: what was learned of the sensor before.

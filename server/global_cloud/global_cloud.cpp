@@ -7,6 +7,8 @@ namespace {
 
 // A room's indices are some 20 MB, a snapshot 1 MB; by hand.
 constexpr std::size_t kSnapshotsKept = 6, kRoomsKept = 3;
+// So many rooms that sessions still look back at are no reason to make fewer; 160 MB. By hand.
+constexpr std::size_t kRoomsAtEase = 8;
 constexpr int kLateOnes = 3;  // in a row: it is not one bad stamp; by hand
 
 // Once one was asked for; a crowded room is renewed every second; by hand.
@@ -14,6 +16,11 @@ constexpr int kRoomsDescribedAhead = 16;
 
 StampNs gap(StampNs a, StampNs b) {
   return a > b ? a - b : b - a;
+}
+
+bool of_same_lidars(const StitchedRoom::Parts& a, const StitchedRoom::Parts& b) {
+  const auto lidar = [](const auto& part) { return &part->lidar(); };
+  return std::ranges::equal(a, b, {}, lidar, lidar);
 }
 
 }  // namespace
@@ -119,7 +126,16 @@ std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame
   for (const Frame& frame : frames) parts.push_back(frame->surfaces());
   for (const auto& room : rooms_)
     if (room->parts() == parts) return room;
-  rooms_.push_back(std::make_shared<const StitchedRoom>(std::move(parts), options_.snapshot, prepared_));
+  const StampNs stamp_ns = std::ranges::max(frames, {}, &LidarFrame::stamp_ns)->stamp_ns();
+  std::erase_if(all_rooms_, [](const auto& room) { return room.expired(); });
+  const auto crowding = static_cast<StampNs>(std::max<std::size_t>(1, all_rooms_.size() / kRoomsAtEase));
+  for (const auto& room : rooms_)
+    if (gap(room->stamp_ns(), stamp_ns) < crowding * options_.least_renewal_ns &&
+        of_same_lidars(room->parts(), parts))
+      return room;
+  rooms_.push_back(
+      std::make_shared<const StitchedRoom>(std::move(parts), stamp_ns, options_.snapshot, prepared_));
+  all_rooms_.push_back(rooms_.back());
   if (rooms_.size() > kRoomsKept) rooms_.pop_front();
   return rooms_.back();
 }

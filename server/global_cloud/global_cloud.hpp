@@ -22,7 +22,10 @@ struct GlobalCloudOptions {
   bool drop_moving = true;               ///< what moves is not map: it neither registers nor contradicts
   StampNs keep_ns = from_seconds(3.0);   ///< frames older than the newest by more than this are forgotten
   StampNs renew_ns = from_seconds(4.0);  ///< small changes of the room are gathered for so long
-  StampNs match_ns = from_ms(100.0);     ///< farther from a request than this is no GPC (paper, section 5.3.1)
+  /// A room's surfaces are indexed anew no sooner; until then lines of sight tell what has changed. The longer
+  /// the more rooms sessions still hold, so that memory stays bounded.
+  StampNs least_renewal_ns = from_ms(100.0);
+  StampNs match_ns = from_ms(100.0);  ///< farther from a request than this is no GPC (paper, section 5.3.1)
   std::size_t max_frames_per_lidar = 128;  ///< a LiDAR that floods loses its oldest
 };
 
@@ -85,9 +88,10 @@ class GlobalCloud {
   int epoch_ =
       0;  ///< raised when small changes have gathered: all LiDARs then renew together, at one rebuild's cost
   StampNs epoch_since_ns_ = 0;
-  std::deque<std::shared_ptr<const Snapshot>> snapshots_;  ///< asked for lately, newest last
-  std::deque<std::shared_ptr<const StitchedRoom>> rooms_;  ///< of them
-  std::shared_ptr<const StitchedRoom> prepared_;           ///< newest
+  std::deque<std::shared_ptr<const Snapshot>> snapshots_;    ///< asked for lately, newest last
+  std::deque<std::shared_ptr<const StitchedRoom>> rooms_;    ///< of them
+  std::deque<std::weak_ptr<const StitchedRoom>> all_rooms_;  ///< also those that only sessions hold
+  std::shared_ptr<const StitchedRoom> prepared_;             ///< newest
   int describe_ahead_ = 0;  ///< so many rooms more get their descriptors before anyone asks for them
 };
 

@@ -72,11 +72,14 @@ class LidarFrame {
 class StitchedRoom {
  public:
   using Parts = std::vector<std::shared_ptr<const LidarSurfaces>>;
-  /// `before`: a room of a moment ago, whose indices may serve for this one's, or null.
-  StitchedRoom(Parts parts, const SnapshotOptions& options, std::weak_ptr<const StitchedRoom> before = {})
-      : parts_(std::move(parts)), options_(options), before_(std::move(before)) {}
+  /// `stamp_ns`: of the newest frame that it was made for. `before`: a room of a moment ago, whose indices may
+  /// serve for this one's, or null.
+  StitchedRoom(Parts parts, StampNs stamp_ns, const SnapshotOptions& options,
+               std::weak_ptr<const StitchedRoom> before = {})
+      : parts_(std::move(parts)), stamp_ns_(stamp_ns), options_(options), before_(std::move(before)) {}
 
   [[nodiscard]] const Parts& parts() const { return parts_; }
+  [[nodiscard]] StampNs stamp_ns() const { return stamp_ns_; }
   [[nodiscard]] const std::shared_ptr<const Surfaces>& surfaces() const;
   [[nodiscard]] const Described& described() const;
   [[nodiscard]] bool has_descriptors() const { return has_descriptors_; }
@@ -90,6 +93,7 @@ class StitchedRoom {
 
  private:
   const Parts parts_;
+  const StampNs stamp_ns_;
   const SnapshotOptions options_;
   const std::weak_ptr<const StitchedRoom> before_;  ///< weak: rooms must not keep all that came before them
   mutable std::once_flag surfaces_once_, described_once_, up_once_;

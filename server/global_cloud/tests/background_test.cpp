@@ -111,8 +111,7 @@ TEST(Background, ACalmRoomIsDerivedOnce) {
   (void)background.surfaces();
   for (int i = 4; i < 24; ++i) {
     (void)background.learn(with_visitor(0.15 * i, i, i + 6));
-    EXPECT_EQ(background.change(), i == 9 ? Change::large : Change::none)
-        << "someone walks by at " << 0.15 * i;
+    EXPECT_EQ(background.change(), i == 9 ? Change::large : Change::none) << "someone walks by at " << 0.15 * i;
   }
 }
 

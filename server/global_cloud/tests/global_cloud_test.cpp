@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <deque>
+#include <set>
 #include <thread>
 
 namespace liloc {
@@ -83,6 +85,41 @@ TEST(GlobalCloud, DescriptorsAreMadeAheadOnceSomebodyNeedsThem) {
   const auto second = room_after(2, 4);  // the third frame renews the room
   EXPECT_NE(second->room(), first->room());
   EXPECT_TRUE(second->room()->has_descriptors());
+}
+
+TEST(GlobalCloud, ARoomIsIndexedAnewEvery100MsAtMost) {
+  GlobalCloud cloud(two_lidars(), {});
+  const auto at = [&](int ms, std::size_t lidar, std::uint16_t units) {
+    EXPECT_TRUE(cloud.add_depth(lidar, wall(kT0 + from_ms(ms), units)));
+    return (*cloud.nearest(kT0 + from_ms(ms)))->room();
+  };
+  at(0, 0, 2000);
+  const auto first = at(10, 1, 2000);
+  at(50, 0, 2500);
+  at(60, 1, 2000);
+  EXPECT_EQ(at(80, 0, 2500), first) << "the wall has gone, and lines of sight say so meanwhile";
+  const auto second = at(115, 0, 2500);
+  EXPECT_NE(second, first);
+  EXPECT_EQ(second->parts().size(), 2U);
+  EXPECT_EQ(at(200, 0, 2500)->parts().size(), 1U) << "LiDAR b is silent: its surfaces are not the room's";
+}
+
+TEST(GlobalCloud, RoomsThatSessionsHoldAreBounded) {
+  GlobalCloud cloud(two_lidars(), {});
+  std::deque<std::shared_ptr<const Snapshot>> held;  // of 4 s, as by sessions that look back five spots
+  std::size_t most = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto units = static_cast<std::uint16_t>(2000 + 20 * i);  // farther each time: the room changes
+    for (const std::size_t lidar : {0U, 1U})
+      ASSERT_TRUE(cloud.add_depth(lidar, wall(kT0 + from_ms(50 * i), units)));
+    held.push_back(*cloud.nearest(kT0 + from_ms(50 * i)));
+    if (held.size() > 80) held.pop_front();
+    std::set<const StitchedRoom*> rooms;
+    for (const auto& snapshot : held) rooms.insert(snapshot->room().get());
+    most = std::max(most, rooms.size());
+  }
+  EXPECT_GT(most, 8U);
+  EXPECT_LT(most, 24U);
 }
 
 TEST(GlobalCloud, ASilentLidarIsLeftOut) {

@@ -208,6 +208,7 @@ void Odometry::begin_anew() {
   motion_.restart();
   covariance_.setZero();
   marked_.setZero();
+  slipped_.setZero();
 }
 
 void Odometry::clock_set() {

@@ -111,7 +111,7 @@ Status Server::open_streams(const ServerOptions& options) {
   backend.forget = [this](const std::string& client_id) { localizer_.forget(client_id); };
   // A LiDAR whose last frame still counts for the stamp need not show a newer one: people move in between,
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
-  backend.ready = [this](StampNs stamp_ns) { return ingest_->seen(stamp_ns - GlobalCloudOptions{}.match_ns); };
+  backend.ready = [this](StampNs stamp_ns) { return ingest_->seen(stamp_ns - global_cloud_.match_ns()); };
   backend.ceiling_now = [this](std::chrono::steady_clock::time_point at) { return ingest_->ceiling_now(at); };
   backend.on_stage = [this](Stage stage, double seconds) { metrics_.staged(stage, seconds); };
   backend.on_answer = [this](const SpotReply& reply) { metrics_.answered(reply); };

@@ -13,12 +13,6 @@ Pose to_domain(const client::Pose& T) {
   return pose;
 }
 
-StampNs wall_clock_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 const char* name_of(client::State state) {

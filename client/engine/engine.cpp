@@ -220,7 +220,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.stamp_ns = image.stamp_ns;
   frame.clock_set_back = *set_by_ns < 0;
   frame.informative = placed->informative;
-  frame.method = step.method;
+  frame.source = step.source;
   frame.converged = step.converged && !step.jumped && !step.doubtful;
   frame.T_odom_sensor = step.T_odom_sensor;
   frame.odom_segment = step.segment;
@@ -228,8 +228,9 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.observed = step.observed;
   inputs.note(spread.fault, step.residual_m, step.strain);
   if (imu) judge_imu(image.stamp_ns, step);
-  doubt.travelled(image.stamp_ns, step, requests.motion_sd(),
-                  {inputs.contradicted(), !external && placed->informative && step.method == "guess"});
+  doubt.travelled(
+      image.stamp_ns, step, requests.motion_sd(),
+      {inputs.contradicted(), !external && placed->informative && step.source == PoseSource::guess});
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   if (const auto estimate = doubt.estimate(); estimate && frame.T_map_sensor)
     frame.covariance = estimate->covariance;

@@ -19,8 +19,7 @@ namespace liloc {
 struct FrameResult {
   StampNs stamp_ns = 0;
   bool informative = true;
-  std::string method;  ///< how its pose was found: "first", "icp", "ransac", "inertial", "standing",
-                       ///< "external", "guess"
+  PoseSource source = PoseSource::guess;
   bool converged =
       true;  ///< measured, and no jump from the frame before (sight corrected what had been guessed)
   double latency_ms = 0;

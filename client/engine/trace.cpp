@@ -58,8 +58,9 @@ Status TraceWriter::on_frame(const FrameResult& frame) {
     corrections_.clear();
   }
   last_ns_ = frame.stamp_ns;
-  note(local_.append(fmt::format("{},{:d},{},{:d},{:.3f},{}", frame.stamp_ns, frame.informative, frame.method,
-                                 frame.converged, frame.latency_ms, numbers(frame.T_odom_sensor, ','))));
+  note(local_.append(fmt::format("{},{:d},{},{:d},{:.3f},{}", frame.stamp_ns, frame.informative,
+                                 name_of(frame.source), frame.converged, frame.latency_ms,
+                                 numbers(frame.T_odom_sensor, ','))));
   if (frame.T_map_sensor) {
     note(online_.append(tum_row(frame.stamp_ns, *frame.T_map_sensor)));
     if (frame.covariance) write_doubt(frame);

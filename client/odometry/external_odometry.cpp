@@ -87,7 +87,7 @@ void ExternalOdometry::place(const Entry& entry, const Pose& T_odom_base, Odomet
 
 OdometryStep ExternalOdometry::step(StampNs stamp_ns) {
   OdometryStep step;
-  step.method = "guess";
+  step.source = PoseSource::guess;
   step.converged = false;
   step.T_odom_sensor = T_odom_last_;
   step.segment = last_segment_;
@@ -114,7 +114,7 @@ OdometryStep ExternalOdometry::step(StampNs stamp_ns) {
     return step;
   }
   if (!placed_) return step;
-  step.method = "external";
+  step.source = PoseSource::external;
   step.converged = true;
   return step;
 }

@@ -33,8 +33,8 @@ class ExternalOdometry {
   /// A covariance that cannot be one is taken for unknown. Errors: not finite, StampWatch's; the sample is then
   /// ignored.
   [[nodiscard]] Status add(const OdometrySample& sample);
-  /// Where the sensor is at a frame's stamp: "external" between two samples, "guess" a little beyond the newest
-  /// or where there is none near; the pose is then the last one and `placed` is false.
+  /// Where the sensor is at a frame's stamp: `external` between two samples, a guess a little beyond the
+  /// newest, or where there is none near; the pose is then the last one and `placed` is false.
   [[nodiscard]] OdometryStep step(StampNs stamp_ns);
   [[nodiscard]] bool placed() const { return placed_; }
   /// The growth of the covariance is counted from the last step on.

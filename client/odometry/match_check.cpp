@@ -48,7 +48,7 @@ bool MatchCheck::unhidden(const ScanMatch& match) const {
 bool MatchCheck::doubtful(const ScanMatch& match) const {
   if (vague())
     return match.unobserved > 0 || match.overlap < kAmpleOverlap || view(match).refuted_share() > kWrongShare;
-  return !match.settled && view(match).refuted_share() > kMovingShare;
+  return !match.converged() && view(match).refuted_share() > kMovingShare;
 }
 
 double MatchCheck::evidence(const ScanMatch& match) const {
@@ -56,7 +56,7 @@ double MatchCheck::evidence(const ScanMatch& match) const {
 }
 
 double MatchCheck::merit(const ScanMatch& match) const {
-  return evidence(match) - kPriorWeight * guess_.surprise_of(match.T_map_sensor);
+  return evidence(match) - kPriorWeight * guess_.squared_mahalanobis(match.T_map_sensor);
 }
 
 }  // namespace liloc

@@ -129,16 +129,16 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
   for (std::size_t i = 0; i < f.size(); ++i) {
     latency.push_back(f[i].latency_ms);
     if (f[i].residual_m > 0) residual_mm.push_back(1e3 * f[i].residual_m);
-    icp += f[i].method == "icp" || f[i].method == "inertial";
-    standing += f[i].method == "standing";
-    ransac += f[i].method == "ransac";
-    guess += f[i].method == "guess";
+    icp += f[i].source == PoseSource::icp || f[i].source == PoseSource::inertial;
+    standing += f[i].source == PoseSource::standing;
+    ransac += f[i].source == PoseSource::ransac;
+    guess += f[i].source == PoseSource::guess;
     dull += !f[i].informative;
     if (frames) {
       const Pose E = run.error(0, i);
       const double step_m = i > 0 ? run.error(i - 1, i).translation().norm() : 0;
-      fmt::print("{:4d} {:8} inf {} conv {} seg {} step {:.1f} mm err {:.1f} mm {:.3f} deg\n", i, f[i].method,
-                 f[i].informative, f[i].converged, f[i].odom_segment, 1e3 * step_m,
+      fmt::print("{:4d} {:8} inf {} conv {} seg {} step {:.1f} mm err {:.1f} mm {:.3f} deg\n", i,
+                 name_of(f[i].source), f[i].informative, f[i].converged, f[i].odom_segment, 1e3 * step_m,
                  1e3 * E.translation().norm(), degrees(rotation_angle_rad(E)));
     }
     if (i == 0) continue;

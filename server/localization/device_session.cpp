@@ -35,7 +35,7 @@ PoseEstimate estimate_of(const Spot& spot, const Hypothesis& hypothesis) {
 /// that hardly hold a pose let it slide.
 bool idly_elsewhere(const Spot& spot, const Hypothesis& here, const PoseEstimate& seen,
                     const PoseEstimate& predicted) {
-  if (surprise_of(predicted, seen) <= kMostSurprise) return false;
+  if (squared_mahalanobis(predicted, seen) <= kChiSquareLimit) return false;
   const Judgement stayed = judge(spot.problem().target, spot.query(), spot.query().medium,
                                  predicted.T_map_sensor, spot.problem().judging.fine_tolerance_m);
   return here.judgement.score < stayed.score + SettleOptions{}.as_good;

@@ -57,7 +57,7 @@ void Desk::submit(wire::Arrival arrival) {
     if (is_newer(*older, arrival)) std::swap(*older, arrival);  // they came in the wrong order
     refuse(*older, Reason::superseded, "a newer request took its place");
   }
-  if (options_.hold.count() > 0 && backend_.ready && !backend_.ready(arrival.request.match_stamp_ns())) {
+  if (must_wait(arrival)) {
     const std::scoped_lock lock(mutex_);
     if (!stopping_ && held_.size() < options_.queue) {
       held_.push_back(std::move(arrival));
@@ -65,6 +65,13 @@ void Desk::submit(wire::Arrival arrival) {
     }
   }
   enqueue(std::move(arrival));
+}
+
+/// For the ceiling to be seen as of its stamp.
+bool Desk::must_wait(const wire::Arrival& arrival) const {
+  if (options_.hold.count() == 0 || !backend_.seen_until) return false;
+  const auto seen_ns = backend_.seen_until();
+  return seen_ns && arrival.request.match_stamp_ns() > *seen_ns;
 }
 
 std::optional<wire::Arrival> Desk::take_waiting(const std::string& client_id) {
@@ -93,12 +100,17 @@ void Desk::enqueue(wire::Arrival arrival) {
 }
 
 void Desk::release() {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (held_.empty()) return;
+  }
+  const auto seen_ns = backend_.seen_until();  // it asks every LiDAR: once, and outside of the lock
   const auto now = std::chrono::steady_clock::now();
   std::vector<wire::Arrival> due;
   {
     const std::scoped_lock lock(mutex_);
     std::erase_if(held_, [&](wire::Arrival& held) {
-      if (now - held.at < options_.hold && !backend_.ready(held.request.match_stamp_ns())) return false;
+      if (seen_ns && held.request.match_stamp_ns() > *seen_ns && now - held.at < options_.hold) return false;
       due.push_back(std::move(held));
       return true;
     });

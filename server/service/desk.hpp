@@ -50,6 +50,7 @@ class Desk {
  private:
   void work();
   void enqueue(wire::Arrival arrival);
+  [[nodiscard]] bool must_wait(const wire::Arrival& arrival) const;
   [[nodiscard]] std::optional<wire::Arrival> take_waiting(const std::string& client_id);
   void tell(Stage stage, std::chrono::steady_clock::time_point since) const;
   void work_on(const wire::Arrival& arrival);

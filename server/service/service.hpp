@@ -1,8 +1,8 @@
 #pragma once
 // Clients' requests over DDS, answered.
 //
-//   auto service = Service::create(dispatcher, {.workers = 2}, {.locate = ..., .forget = ..., .ready = ...});
-//   dispatcher.start();
+//   auto service = Service::create(dispatcher, {.workers = 2}, {.locate = ..., .forget = ..., .seen_until =
+//   ...}); dispatcher.start();
 //   ...
 //   service->stop();     // refuses new requests, finishes what waits
 //   dispatcher.stop();

@@ -12,7 +12,6 @@ namespace liloc::web {
 struct LidarFacts {
   wire::LidarHealth health;
   std::optional<double> age_s;  ///< since its newest good frame came; empty before the first
-  double valid_share = 0;       ///< of that frame's pixels, with a return
 };
 
 struct ServerFacts {

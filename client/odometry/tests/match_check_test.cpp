@@ -25,7 +25,7 @@ struct Scene {
     const auto cloud = depth_to_cloud(scene::render(room, walk(0), options.camera, 1, 0.004), options.camera);
     map.insert(Pose::Identity(), extract_surfels(*cloud, Eigen::Vector3f::Zero()), 1);
     match.overlap = match.paired = 0.9;
-    match.settled = true;
+    match.stop = ScanStop::converged;
   }
   [[nodiscard]] bool doubtful(double guess_sd_m) const {
     const MotionGuess guess(Pose::Identity(), guess_sd_m, guess_sd_m);
@@ -48,7 +48,7 @@ TEST(MatchCheck, WhatSettlesIsNotDoubtfulNorWhatDoesNotWhereNobodyMoves) {
   Scene still(false), people(true);
   EXPECT_FALSE(still.doubtful(kSureM));
   EXPECT_FALSE(people.doubtful(kSureM));
-  still.match.settled = people.match.settled = false;
+  still.match.stop = people.match.stop = ScanStop::iteration_limit;
   EXPECT_FALSE(still.doubtful(kSureM));
   EXPECT_TRUE(people.doubtful(kSureM));
 }

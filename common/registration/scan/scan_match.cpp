@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/pose_estimate.hpp"
+
 namespace liloc {
 namespace {
 
-constexpr double kUsualRangeM = 2.0;  // at which a turn shows as a shift; by hand
+constexpr std::size_t kFewestPairs = 6;  // as many as unknowns
+constexpr double kUsualRangeM = 2.0;     // at which a turn shows as a shift; by hand
 using Matrix6f = PatchWeights::Matrix6f;
 using Vector6f = PatchWeights::Vector6f;
 
@@ -190,11 +193,23 @@ double MotionGuess::sd_m() const {
   return std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
 }
 
-double MotionGuess::surprise_of(const Pose& T_map_sensor_other) const {
+double MotionGuess::squared_mahalanobis(const Pose& T_map_sensor_other) const {
   Vector6d off;
   off.head<3>() = so3_log(T_map_sensor_other.linear() * T_map_sensor.linear().transpose());
   off.tail<3>() = T_map_sensor_other.translation() - T_map_sensor.translation();
-  return off.dot(covariance.ldlt().solve(off));
+  return liloc::squared_mahalanobis(off, covariance);
+}
+
+std::string_view name_of(ScanStop stop) {
+  switch (stop) {
+    case ScanStop::converged:
+      return "converged";
+    case ScanStop::too_few_pairs:
+      return "too few pairs";
+    case ScanStop::iteration_limit:
+      return "iteration limit";
+  }
+  return "unknown";
 }
 
 Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
@@ -210,21 +225,26 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
   std::vector<Pair> pairs;
   pairs.reserve(sources.surfels.size());
   double share = 1;
-  for (match.iterations = 0; match.iterations < options.max_iterations && !match.settled; ++match.iterations) {
+  for (match.iterations = 0; match.iterations < options.max_iterations && !match.converged();
+       ++match.iterations) {
     const MotionGuess doubt(match.T_map_sensor, share * guess.covariance);
     const bool vague = doubt.sd_m() + kUsualRangeM * doubt.sd_rad() > options.vague_m;
     // What the guess may still be off shrinks with each step; while that is much, planes are looked for farther
     // away.
     share *= vague ? 0.5 : 0.25;
     find_pairs(map, sources.surfels, match.T_map_sensor, now_ns, vague ? 2 : 1, pairs);
-    if (pairs.size() < 6) break;
+    if (pairs.size() < kFewestPairs) {
+      match.stop = ScanStop::too_few_pairs;
+      break;
+    }
     Normal n = accumulate(pairs, sources.patches, doubt.covariance, vague, options);
     drop_unobserved(n, options, match);
     add_prior(n, guess, certainty, match.T_map_sensor);
     match.information = n.H;
     const Vector6d step = n.H.ldlt().solve(n.b);
     apply(match.T_map_sensor, step);
-    match.settled = step.head<3>().norm() < options.stop_rad && step.tail<3>().norm() < options.stop_m;
+    if (step.head<3>().norm() < options.stop_rad && step.tail<3>().norm() < options.stop_m)
+      match.stop = ScanStop::converged;
   }
   grade(match, pairs, sources.surfels.size());
   match.T_map_sensor = normalized(match.T_map_sensor);

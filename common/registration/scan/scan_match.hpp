@@ -1,8 +1,10 @@
 #pragma once
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "common/base/result.hpp"
+#include "common/geometry/pose.hpp"
 #include "common/registration/points/patches.hpp"
 #include "common/registration/scan/local_map.hpp"
 
@@ -21,8 +23,8 @@ struct MotionGuess {
   /// Of the axis that is known least.
   [[nodiscard]] double sd_rad() const;
   [[nodiscard]] double sd_m() const;
-  /// Squared distance of a pose from the guess over its covariance: 6 on average where that is right.
-  [[nodiscard]] double surprise_of(const Pose& T_map_sensor_other) const;
+  /// Squared Mahalanobis distance of a pose from the guess.
+  [[nodiscard]] double squared_mahalanobis(const Pose& T_map_sensor_other) const;
 };
 
 /// Defaults are by hand where nothing else is said.
@@ -45,6 +47,14 @@ struct ScanMatchOptions {
   double observed_share = 1e-4;  ///< or with less of the whole than so, is left to the guess
 };
 
+/// Why a match went no further.
+enum class ScanStop {
+  converged,        ///< the last step was below the stop limits
+  too_few_pairs,    ///< hardly a surfel of the frame has a plane near
+  iteration_limit,  ///< `max_iterations` are over
+};
+[[nodiscard]] std::string_view name_of(ScanStop stop);
+
 struct ScanMatch {
   Pose T_map_sensor = Pose::Identity();
   /// Of the scene and the prior, [rotation; translation], map axes about the sensor's position.
@@ -57,7 +67,9 @@ struct ScanMatch {
   double paired = 0;   ///< share of the used surfels with any plane near, 0..1
   double rmse_m = 0;   ///< distance to the planes over the overlap
   int iterations = 0;
-  bool settled = false;  ///< the last step was below the stop limits
+  ScanStop stop = ScanStop::iteration_limit;
+
+  [[nodiscard]] bool converged() const { return stop == ScanStop::converged; }
 };
 
 /// Point-to-plane registration of a frame's surfels (sensor frame) to the map, with a Geman-McClure kernel

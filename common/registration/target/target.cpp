@@ -18,7 +18,8 @@ constexpr FieldOptions kFineField{0.1, 0.08, -40, 0};
 constexpr double kBeside_m = 0.3;  // of what is seen of somebody from above: the rest, and a step in 0.1 s
 // Within which they hide a surface from the device, or are one themselves; by hand.
 constexpr double kAround_m = 0.45;
-constexpr float kGone_m = 0.05F;  // a voxel; by hand
+constexpr float kGone_m = 0.05F;              // a voxel; by hand
+constexpr double kRadius = 2.5, kWidest = 8;  // of neighbourhoods, in voxels; by hand; DECISIONS.md
 
 /// Whether a ceiling sensor looks through the place by now and none sees anything there.
 bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
@@ -71,18 +72,6 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
     thin.normals.pop_back();
   }
   return thin;
-}
-
-/// Points with normals. A cloud that was thinned to few bytes is sparser than its voxels, and nearly all of it
-/// would hang in the air: there neighbourhoods widen until it holds together.
-Cloud with_normals_of(const Cloud& seen, double voxel_size_m) {
-  // In voxels; by hand; DECISIONS.md.
-  constexpr double kRadius = 2.5, kWiden = 1.5, kWidest = 8;
-  double radius = kRadius;
-  Cloud cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
-  while (3 * cloud.size() < seen.size() && (radius *= kWiden) < kWidest)
-    cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
-  return cloud;
 }
 
 }  // namespace
@@ -167,7 +156,10 @@ Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOpt
   Cloud seen = voxel_downsample(cloud_sensor, options.voxel_size_m);
   if (camera != nullptr) query.view = SightView::from_cloud(seen, *camera, options.voxel_size_m, 80);
   seen.points.insert(seen.points.end(), extra_sensor.points.begin(), extra_sensor.points.end());
-  query.cloud = with_normals_of(seen, options.voxel_size_m);
+  // A cloud that was thinned to few bytes is sparser than its voxels, and nearly all of it would hang in the
+  // air.
+  query.cloud = with_normals(seen, Eigen::Vector3f::Zero(),
+                             {kRadius * options.voxel_size_m, 5, kWidest * options.voxel_size_m});
   query.medium = voxel_downsample(query.cloud, 2 * options.voxel_size_m);
   query.sparse = spread_points(query.cloud, options.sparse_points, options.voxel_size_m, options.seed);
   return query;

@@ -151,7 +151,7 @@ TEST(Desk, TellsEachAnswerHowLongItTookWhereAndHowClientsStand) {
     std::this_thread::sleep_for(20ms);
     return r.client_id == "a" ? verified(r) : refusal(r, Reason::not_found, "");
   };
-  backend.ready = [&](StampNs) { return ready.load(); };
+  backend.seen_until = [&] { return std::optional<StampNs>(ready ? 1 : 0); };
   backend.on_stage = [&](Stage stage, double s) {
     const std::scoped_lock lock(mutex);
     seconds[stage].push_back(s);
@@ -441,7 +441,7 @@ TEST(Desk, ARequestWaitsForTheCeilingButNotForever) {
   Answers answers;
   std::atomic<StampNs> seen = 0;
   Desk desk({.hold = 500ms},
-            {.locate = verified, .forget = {}, .ready = [&](StampNs stamp) { return stamp <= seen; }},
+            {.locate = verified, .forget = {}, .seen_until = [&] { return std::optional(seen.load()); }},
             answers.sink());
   desk.submit(arrival("a", 1));
   desk.submit(arrival("b", 2));
@@ -458,13 +458,42 @@ TEST(Desk, ARequestWaitsForTheCeilingButNotForever) {
   EXPECT_EQ(answers.reason("b", 2), Reason::confirmed);
 }
 
+TEST(Desk, AReleaseAsksForTheCeilingOnceHoweverManyWait) {
+  Answers answers;
+  std::atomic<int> asked = 0;
+  ServiceBackend backend;
+  backend.locate = verified;
+  backend.seen_until = [&] {
+    ++asked;
+    return std::optional<StampNs>(0);
+  };
+  Desk desk({.hold = 10s}, backend, answers.sink());
+  desk.release();
+  EXPECT_EQ(asked, 0) << "nobody waits";
+  for (std::uint64_t seq = 1; seq <= 20; ++seq) desk.submit(arrival("client" + std::to_string(seq), seq));
+  asked = 0;
+  desk.release();
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(desk.counters().queued, 20U);
+}
+
+TEST(Desk, NobodyWaitsForACeilingOfWhichNoLidarIsHeard) {
+  Answers answers;
+  ServiceBackend backend;
+  backend.locate = verified;
+  backend.seen_until = [] { return std::optional<StampNs>(); };
+  Desk desk({.hold = 10s}, backend, answers.sink());
+  desk.submit(arrival("a", 1));
+  ASSERT_TRUE(answers.wait_for(1));
+}
+
 TEST(Desk, StoppingFinishesWhatWaitsAndRefusesTheRest) {
   Gate gate;
   Answers answers;
   Desk desk({},
             {.locate = [&](const SpotRequest& r) { return gate.pass(r); },
              .forget = {},
-             .ready = [](StampNs stamp) { return stamp != 9; }},
+             .seen_until = [] { return std::optional<StampNs>(8); }},
             answers.sink());
   desk.submit(arrival("a", 1));
   gate.wait_inside();
@@ -584,7 +613,7 @@ TEST(Desk, UnderLoadEachRequestIsAnsweredExactlyOnce) {
   };
   std::atomic<StampNs> seen = 0;
   Desk desk({.workers = 4, .queue = 8, .max_rate_hz = 10'000, .hold = 5ms},
-            {.locate = locate, .forget = {}, .ready = [&](StampNs stamp) { return stamp <= seen; }},
+            {.locate = locate, .forget = {}, .seen_until = [&] { return std::optional(seen.load()); }},
             answers.sink());
   constexpr int kThreads = 8;
   constexpr std::uint64_t kEach = 300;

@@ -20,8 +20,7 @@ struct FrameResult {
   StampNs stamp_ns = 0;
   bool informative = true;
   PoseSource source = PoseSource::guess;
-  bool converged =
-      true;  ///< measured, and no jump from the frame before (sight corrected what had been guessed)
+  bool converged = true;  ///< measured, and without a discontinuity (sight corrected what had been guessed)
   double latency_ms = 0;
   Pose T_odom_sensor = Pose::Identity();
   std::uint32_t odom_segment = 0;

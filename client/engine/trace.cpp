@@ -8,8 +8,8 @@
 namespace liloc {
 namespace {
 
-constexpr StampNs kSettled = from_ms(10'000);  // answers come within seconds; by hand
-constexpr std::size_t kMostTimedOut = 64;      // later answers to older requests are ignored; by hand
+constexpr StampNs kFinalAfter = from_ms(10'000);  // answers come within seconds; by hand
+constexpr std::size_t kMostTimedOut = 64;         // later answers to older requests are ignored; by hand
 // What the files' columns are: proto-tests/replay reads them.
 constexpr char kLocalHeader[] = "stamp_ns,informative,method,converged,latency_ms,tx,ty,tz,qx,qy,qz,qw";
 constexpr char kSpotsHeader[] =
@@ -66,7 +66,7 @@ Status TraceWriter::on_frame(const FrameResult& frame) {
     if (frame.covariance) write_doubt(frame);
     frames_.push_back({frame.stamp_ns, frame.odom_segment, frame.T_odom_sensor, *frame.T_map_sensor});
   }
-  write_trajectory(frame.stamp_ns - kSettled);
+  write_trajectory(frame.stamp_ns - kFinalAfter);
   return status_;
 }
 

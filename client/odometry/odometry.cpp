@@ -12,7 +12,7 @@ namespace liloc {
 namespace {
 
 // By hand, where nothing else is said.
-constexpr double kVagueRad = 0.1, kPoorOverlap = 0.8;  // one turned by more may lead to a wrong match
+constexpr double kWidePriorRad = 0.1, kPoorOverlap = 0.8;  // one turned by more may lead to a wrong match
 constexpr double kReachM = 0.3, kReachSpeed = 2;  // m/s: nobody carries a device off faster while it is blind
 constexpr double kGyroTrustRad = 0.2;             // the gyro cannot be off by more over a bridged stretch
 // Of a pose that the scene showed along some axes only; by hand.
@@ -45,7 +45,7 @@ std::optional<ScanMatch> Odometry::match_near(const std::vector<Surfel>& frame, 
   if (!found) return std::nullopt;
   std::optional<ScanMatch> best;
   if (check.believable(*found)) best = *found;
-  if (guess.sd_rad() > kVagueRad && found->overlap < kPoorOverlap)
+  if (guess.sd_rad() > kWidePriorRad && found->overlap < kPoorOverlap)
     for (const ScanMatch& wide : match_widely(segment_.map, frame, guess, stamp_ns))
       if (check.believable(wide) && check.unhidden(wide) && (!best || check.merit(wide) > check.merit(*best)))
         best = wide;
@@ -147,7 +147,7 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
   step.observed.tail<3>() = (R.transpose() * match.observed.bottomRightCorner<3, 3>() * R).diagonal();
   const Matrix6d covariance = match.information.inverse();
   const bool guessed = from.anchored_ns != from.from_ns || largest_sd_m(segment_.covariance) > kGuessedSdM;
-  step.jumped = guessed && distance_m(match.T_map_sensor, guess.T_map_sensor) > options_.jump_m;
+  step.discontinuous = guessed && distance_m(match.T_map_sensor, guess.T_map_sensor) > options_.discontinuity_m;
   segment_.unmatched_ns = 0;
   segment_.anchored_ns = from.to_ns;
   const bool found = step.source == PoseSource::ransac;
@@ -249,7 +249,7 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
     step.source = PoseSource::first;
     step.T_odom_sensor = T_odom_last_;
     step.converged = usable;
-    step.jumped = segment_.id > 0;  // nobody saw the way from the last segment
+    step.discontinuous = segment_.id > 0;  // nobody saw the way from the last segment
     segment_.anchored_ns = image.stamp_ns;
   } else {
     const FrameStep from{last_ns_, image.stamp_ns, segment_.anchored_ns, T_odom_last_};

@@ -24,7 +24,7 @@ struct OdometryOptions {
   double min_overlap_lost = 0.25;     ///< the same where no guess speaks for the match, but the view agrees:
   double max_refuted_share = 0.18;    ///< of the map in view that the image may look through
   StampNs recover_ns = from_ms(300);  ///< between two attempts to find the place by features
-  double jump_m = 0.03;               ///< correction after a stretch without sight that is marked as a jump
+  double discontinuity_m = 0.03;      ///< correction after a stretch without sight that is marked
   double keyframe_m = 0.05, keyframe_rad = 0.035;
   StampNs keyframe_ns = from_ms(300);  ///< motion or time since the last keyframe that makes the next one
   std::uint64_t seed = 1;
@@ -34,9 +34,9 @@ struct OdometryOptions {
 struct OdometryStep {
   Pose T_odom_sensor = Pose::Identity();
   PoseSource source = PoseSource::guess;
-  bool converged = true;  ///< the pose was measured
-  bool doubtful = false;  ///< but may follow somebody who walks, or be one place of several
-  bool jumped = false;    ///< and sight, after a stretch without, corrected what had been guessed
+  bool converged = true;       ///< the pose was measured
+  bool doubtful = false;       ///< but may follow somebody who walks, or be one place of several
+  bool discontinuous = false;  ///< and sight, after a stretch without, corrected what had been guessed
   std::uint32_t segment = 0;
   double overlap = 0;     ///< of the match; 0 for a guess
   double residual_m = 0;  ///< of the match, root mean square; 0 for a guess

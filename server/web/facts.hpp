@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/wire/status.hpp"
-#include "server/service/desk.hpp"
+#include "server/service/request_scheduler.hpp"
 
 namespace liloc::web {
 

@@ -150,19 +150,19 @@ TEST(Engine, ABlockedCameraIsBridgedAndAskedAboutAfterwards) {
   EXPECT_TRUE(walker.engine.take_request());
 }
 
-TEST(Engine, TheJumpBackFromAGuessIsMarked) {
+TEST(Engine, TheDiscontinuityAfterAGuessIsMarked) {
   Walker walker(engine_options());  // without an IMU the guess stays behind
   Pose last = walker.step().T_odom_sensor;
-  int jumps = 0;
+  int discontinuities = 0;
   for (int i = 1; i < 60; ++i) {
     const FrameResult now = walker.step(i > 30 && i <= 36);
     const Pose T_true = walk(time_of(i - 1)).inverse() * walk(time_of(i));
     const double step_error_m = distance_m(last * T_true, now.T_odom_sensor);
     EXPECT_TRUE(!now.converged || step_error_m < 0.03) << "frame " << i << ": " << step_error_m;
-    jumps += !now.converged && now.source == PoseSource::icp ? 1 : 0;
+    discontinuities += !now.converged && now.source == PoseSource::icp ? 1 : 0;
     last = now.T_odom_sensor;
   }
-  EXPECT_EQ(jumps, 1);
+  EXPECT_EQ(discontinuities, 1);
 }
 
 TEST(Engine, AfterABlackoutItIsNotFoundWhereNobodyCarriesItInThatTime) {
@@ -191,7 +191,7 @@ TEST(Engine, ALongBlackoutStartsANewSegmentWhereTheOldOneEnded) {
   EXPECT_EQ(frame.odom_segment, 0U);
   frame = walker.step();
   EXPECT_EQ(frame.odom_segment, 1U);
-  EXPECT_LT(distance_m(before, frame.T_odom_sensor), 0.05);  // bridged, no jump
+  EXPECT_LT(distance_m(before, frame.T_odom_sensor), 0.05);  // bridged, continuous
   const auto request = walker.engine.take_request();
   ASSERT_TRUE(request);
   EXPECT_EQ(request->odom_segment, 1U);

@@ -95,16 +95,16 @@ struct Normal {
 /// Half-width of the kernel, squared: what noise and a guess of covariance `doubt` let the residual be. Of a
 /// wall that is little, along a direction that is in doubt it is much; a person who walked off is outside of
 /// both.
-float kernel_squared(const Pair& p, const Matrix6f& doubt, const Vector6f& J, bool vague,
+float kernel_squared(const Pair& p, const Matrix6f& doubt, const Vector6f& J, bool wide_prior,
                      const ScanMatchOptions& options) {
   const auto low = static_cast<float>(options.kernel_min_m);
-  const auto high = static_cast<float>(vague ? options.kernel_vague_m : options.kernel_max_m);
+  const auto high = static_cast<float>(wide_prior ? options.kernel_wide_m : options.kernel_max_m);
   const auto deviations = static_cast<float>(options.kernel_deviations);
   const float expected = p.sd * p.sd + J.dot(doubt * J);
   return std::clamp(deviations * deviations * expected, low * low, high * high);
 }
 
-Normal accumulate(const std::vector<Pair>& pairs, std::size_t patches, const Matrix6d& doubt, bool vague,
+Normal accumulate(const std::vector<Pair>& pairs, std::size_t patches, const Matrix6d& doubt, bool wide_prior,
                   const ScanMatchOptions& options) {
   Normal n;
   const Matrix6f doubtf = doubt.cast<float>();
@@ -113,7 +113,7 @@ Normal accumulate(const std::vector<Pair>& pairs, std::size_t patches, const Mat
   const std::vector<float> patch_weights = sums.weights(doubtf, options.patch);
   for (const Pair& p : pairs) {
     const Vector6f J = p.jacobian();
-    const float scaled = p.residual * p.residual / kernel_squared(p, doubtf, J, vague, options);
+    const float scaled = p.residual * p.residual / kernel_squared(p, doubtf, J, wide_prior, options);
     const float robust = patch_weights[p.patch] / ((1 + scaled) * (1 + scaled));
     const double weight = static_cast<double>(p.weight) * robust / (static_cast<double>(p.sd) * p.sd);
     n.noise += weight * static_cast<double>(p.normal_variance);
@@ -228,16 +228,16 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
   for (match.iterations = 0; match.iterations < options.max_iterations && !match.converged();
        ++match.iterations) {
     const MotionGuess doubt(match.T_map_sensor, share * guess.covariance);
-    const bool vague = doubt.sd_m() + kUsualRangeM * doubt.sd_rad() > options.vague_m;
+    const bool wide_prior = doubt.sd_m() + kUsualRangeM * doubt.sd_rad() > options.wide_prior_m;
     // What the guess may still be off shrinks with each step; while that is much, planes are looked for farther
     // away.
-    share *= vague ? 0.5 : 0.25;
-    find_pairs(map, sources.surfels, match.T_map_sensor, now_ns, vague ? 2 : 1, pairs);
+    share *= wide_prior ? 0.5 : 0.25;
+    find_pairs(map, sources.surfels, match.T_map_sensor, now_ns, wide_prior ? 2 : 1, pairs);
     if (pairs.size() < kFewestPairs) {
       match.stop = ScanStop::too_few_pairs;
       break;
     }
-    Normal n = accumulate(pairs, sources.patches, doubt.covariance, vague, options);
+    Normal n = accumulate(pairs, sources.patches, doubt.covariance, wide_prior, options);
     drop_unobserved(n, options, match);
     add_prior(n, guess, certainty, match.T_map_sensor);
     match.information = n.H;

@@ -40,8 +40,8 @@ struct ScanMatchOptions {
   double kernel_min_m = 0.02;    ///< never narrower: the map's own surfels err by as much at edges
   double kernel_max_m = 0.10;    ///< nor wider
   PatchOptions patch;            ///< what stands or moves together counts together
-  double vague_m = 0.08;         ///< a guess that may shift points by more looks two cells far for planes,
-  double kernel_vague_m = 0.25;  ///< with a kernel as wide as this
+  double wide_prior_m = 0.08;    ///< a guess that may shift points by more looks two cells far for planes,
+  double kernel_wide_m = 0.25;   ///< with a kernel as wide as this
   double observed_noise =
       3;  ///< a direction with less information than so many times what noisy normals feign,
   double observed_share = 1e-4;  ///< or with less of the whole than so, is left to the guess

@@ -34,7 +34,7 @@ bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
 
 /// Surfaces near `around`, and those that are gone.
 std::vector<std::uint8_t> stale_points(const Cloud& cloud_map, const std::vector<SightView>& views,
-                                       const Vicinity& around) {
+                                       const VoxelMask& around) {
   std::vector<std::uint8_t> stale(cloud_map.size(), 0);
   for (std::size_t i = 0; i < cloud_map.size(); ++i)
     stale[i] = around.at(cloud_map.points[i]) || gone(views, cloud_map.points[i]) ? 1 : 0;
@@ -129,18 +129,18 @@ const ScoreField& Surfaces::field_fine() const {
   return field_fine_;
 }
 
-Present::Present(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
-                 const Cloud& moving_map)
-    : movers(moving_map.points, kBeside_m),
-      stale(stale_points(surfaces->coarse, views, Vicinity(moving_map.points, kAround_m))),
+DynamicRegions::DynamicRegions(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
+                               const Cloud& moving_map)
+    : mask(moving_map.points, kBeside_m),
+      stale(stale_points(surfaces->coarse, views, VoxelMask(moving_map.points, kAround_m))),
       map_points(map_points_of(surfaces->coarse, stale)),
       surfaces_(std::move(surfaces)) {}
 
-const ScoreField& Present::field_coarse() const {
-  if (movers.empty()) return surfaces_->field_coarse();
+const ScoreField& DynamicRegions::field_coarse() const {
+  if (mask.empty()) return surfaces_->field_coarse();
   std::call_once(once_, [this] {
     field_coarse_ = surfaces_->field_coarse();
-    field_coarse_.forget_free_space(movers);
+    field_coarse_.forget_free_space(mask);
   });
   return field_coarse_;
 }

@@ -143,7 +143,7 @@ TEST(ScanMatch, APersonWhoWalksOffDoesNotTakeASureGuessAlong) {
   EXPECT_LT(error_m(corridor(), person, {T, 0.001, 0.004}, from_ms(970)), 0.006);
 }
 
-TEST(ScanMatch, AVagueGuessIsMended) {
+TEST(ScanMatch, AWidePriorIsMended) {
   const auto room = furnished_room(2);
   const Pose T = looking({2.6, 2.2, 1.2}, 1.4, 0.2);
   LocalMap map;

@@ -111,9 +111,9 @@ void StandingView::find_edges() {
     if (a == 0 || gap > room) return;
     const int b = reference_.units[static_cast<std::size_t>(index + gap * step)];
     if (b == 0) return;
-    const auto step = static_cast<float>(std::abs(a - b)), farther = static_cast<float>(std::max(a, b));
-    if (step < kEdgeShare * farther ||
-        step < kEdgeDeviations * noise_.sd_units(static_cast<std::uint16_t>(std::max(a, b))))
+    const auto height_units = static_cast<float>(std::abs(a - b)), farther = static_cast<float>(std::max(a, b));
+    if (height_units < kEdgeShare * farther ||
+        height_units < kEdgeDeviations * noise_.sd_units(static_cast<std::uint16_t>(std::max(a, b))))
       return;
     const auto first = static_cast<std::uint32_t>(v * width + u),
                second = static_cast<std::uint32_t>(index + gap * step);

@@ -48,7 +48,7 @@ TEST_P(PoseEstimateLaw, ACarriedCovarianceIsThatOfTheErrors) {
     const PoseEstimate estimate = carried({disturbed(truth, drawn(rng, before)), before}, T_step, kSdRad, kSdM);
     const Pose seen = disturbed(truth * T_step, drawn(rng, diagonal(kSdRad, kSdM)));
     const Vector6d error = offset_of(estimate.T_map_sensor, seen);
-    sum += error.dot(estimate.covariance.ldlt().solve(error));
+    sum += squared_mahalanobis(error, estimate.covariance);
   }
   EXPECT_NEAR(sum / kDraws, 6, 0.7);  // its deviation is 0.15
 }

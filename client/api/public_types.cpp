@@ -54,6 +54,9 @@ State to_public(Tracking tracking) {
   return State::searching;
 }
 
+// The public header includes nothing of ours.
+static_assert(from_ms(Options{}.interval_ms) == kRequestInterval);
+
 Status check_ranges(const Options& o) {
   if (!(o.min_range_m > 0) || !(o.max_range_m > o.min_range_m) || o.max_range_m > 100)
     return fail("options.min_range_m..max_range_m is {}..{}; must rise within 0..100 m", o.min_range_m,

@@ -41,7 +41,7 @@ Status Daemon::join() {
   if (!joined) return tl::unexpected(joined.error());
   participant_ = std::move(*joined);
   if (!options_.ros.enabled) return {};
-  auto ros = RosFace::create(*participant_, options_);
+  auto ros = RosBridge::create(*participant_, options_);
   if (!ros) return tl::unexpected(ros.error());
   ros_ = std::move(*ros);
   return {};

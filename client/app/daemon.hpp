@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "client/app/options.hpp"
-#include "client/app/ros_face.hpp"
+#include "client/app/ros_bridge.hpp"
 #include "client/app/sensor_feed.hpp"
 #include "common/wire/dispatcher.hpp"
 
@@ -36,7 +36,7 @@ class Daemon {
 
   DaemonOptions options_;
   std::optional<wire::Participant> participant_;
-  std::unique_ptr<RosFace> ros_;
+  std::unique_ptr<RosBridge> ros_;
   std::unique_ptr<client::Client> client_;
   std::unique_ptr<SensorFeed> feed_;
   std::unique_ptr<wire::Dispatcher> sensors_;  ///< its thread calls the above: it goes first

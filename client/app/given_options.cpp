@@ -14,8 +14,8 @@ namespace liloc {
 namespace {
 
 /// Both numbers of a mounting or neither.
-Status settle_pose(const std::string& name, const std::vector<double>& translation,
-                   const std::vector<double>& rotation, std::optional<client::Pose>& to) {
+Status apply_pose(const std::string& name, const std::vector<double>& translation,
+                  const std::vector<double>& rotation, std::optional<client::Pose>& to) {
   if (translation.empty() != rotation.empty())
     return fail("--{0}-translation and --{0}-rotation go together: give both or neither", name);
   if (translation.empty()) return {};
@@ -33,7 +33,7 @@ Status settle_pose(const std::string& name, const std::vector<double>& translati
   return tl::unexpected(Error{message});
 }
 
-Status settle_name(const char* flag, const std::string& given, const std::string& usual, std::string& to) {
+Status apply_name(const char* flag, const std::string& given, const std::string& usual, std::string& to) {
   const auto topic = wire::dds_topic(given.empty() ? usual : given);
   if (!topic)
     return fail("{} is '{}'; give a ROS name: letters, digits, _ and /, at most 200", flag,
@@ -71,7 +71,7 @@ Status check_network(const client::Options& c) {
   return {};
 }
 
-Status settle_topics(const GivenOptions& given, DaemonOptions& options) {
+Status apply_topics(const GivenOptions& given, DaemonOptions& options) {
   const std::string& id = options.client.id;
   SensorTopics& in = options.topics;
   wire::RosNames& out = options.ros.names;
@@ -86,7 +86,7 @@ Status settle_topics(const GivenOptions& given, DaemonOptions& options) {
       {"--odom-topic", given.odom, id + "/odom", &out.odometry},
       {"--diagnostics-topic", given.diagnostics, "diagnostics", &out.diagnostics}};
   for (const auto& [flag, typed, usual, to] : names)
-    if (const Status ok = settle_name(flag, typed, usual, *to); !ok) return ok;
+    if (const Status ok = apply_name(flag, typed, usual, *to); !ok) return ok;
   if (!given.odometry.empty()) out.odom_frame = "odom";
   if (!given.map_frame.empty()) out.world_frame = given.map_frame;
   if (!given.odom_frame.empty()) out.odom_frame = given.odom_frame;
@@ -95,19 +95,19 @@ Status settle_topics(const GivenOptions& given, DaemonOptions& options) {
 }
 
 /// Odometry that others keep, and where the sensor sits on what it moves.
-Status settle_odometry(const GivenOptions& given, DaemonOptions& options) {
+Status apply_odometry(const GivenOptions& given, DaemonOptions& options) {
   if (given.odometry.empty() && !given.base_translation.empty())
     return fail("--base-... says how the sensor is mounted for --odometry-topic: give that, or leave it out");
   if (!given.odometry.empty()) {
-    if (const Status ok = settle_name("--odometry-topic", given.odometry, "", options.topics.odometry); !ok)
+    if (const Status ok = apply_name("--odometry-topic", given.odometry, "", options.topics.odometry); !ok)
       return ok;
     options.client.local = client::Local::external;
   }
-  return settle_pose("base", given.base_translation, given.base_rotation, options.client.T_base_sensor);
+  return apply_pose("base", given.base_translation, given.base_rotation, options.client.T_base_sensor);
 }
 
 /// The camera whose image stands for a cloud.
-Status settle_points_view(const std::vector<double>& view, DaemonOptions& options) {
+Status apply_points_view(const std::vector<double>& view, DaemonOptions& options) {
   if (!options.topics.use_points || !options.device_file.empty()) return {};
   const double width = view[0], height = view[1], across = radians(view[2]), down = radians(view[3]);
   if (!(width >= 16 && width <= 2048 && height >= 16 && height <= 2048 && across > 0.1 && across < 2.8 &&
@@ -135,7 +135,7 @@ Status check_imu(const DaemonOptions& options) {
       local == client::Local::inertial ? "inertial" : "dead-reckoning");
 }
 
-Status settle(const GivenOptions& given, DaemonOptions& options) {
+Status apply(const GivenOptions& given, DaemonOptions& options) {
   static const std::map<std::string, client::Local> methods{{"cloud", client::Local::cloud},
                                                             {"inertial", client::Local::inertial},
                                                             {"dead-reckoning", client::Local::dead_reckoning}};
@@ -152,17 +152,17 @@ Status settle(const GivenOptions& given, DaemonOptions& options) {
   options.client.codec = codec->second;
   options.log_level = *level;
   if (const Status ok =
-          settle_pose("imu", given.imu_translation, given.imu_rotation, options.client.T_imu_sensor);
+          apply_pose("imu", given.imu_translation, given.imu_rotation, options.client.T_imu_sensor);
       !ok)
     return ok;
   if (options.client.T_imu_sensor && !options.device_file.empty())
     return fail("--imu-... and --device contradict each other: give one of them");
   if (const Status ok = check_network(options.client); !ok) return ok;
-  if (const Status ok = settle_topics(given, options); !ok) return ok;
-  if (const Status ok = settle_odometry(given, options); !ok) return ok;
+  if (const Status ok = apply_topics(given, options); !ok) return ok;
+  if (const Status ok = apply_odometry(given, options); !ok) return ok;
   if (options.device_file.empty())
     if (const Status ok = check_imu(options); !ok) return ok;
-  return settle_points_view(given.points_view, options);
+  return apply_points_view(given.points_view, options);
 }
 
 }  // namespace liloc

@@ -18,7 +18,7 @@ struct GivenOptions {
 
 /// Makes options of it, with defaults named after the device. Errors: what does not go together or is out of
 /// range, with the option's name.
-[[nodiscard]] Status settle(const GivenOptions& given, DaemonOptions& options);
+[[nodiscard]] Status apply(const GivenOptions& given, DaemonOptions& options);
 
 /// Local registration by an IMU needs one; to be asked once the device's file has been read.
 [[nodiscard]] Status check_imu(const DaemonOptions& options);

@@ -176,7 +176,7 @@ Result<DaemonOptions> parse_arguments(int argc, const char* const* argv, int& ex
   command::ProgramOptions program(app);
   if (const Status parsed = program.parse(argc, argv, exit_code); !parsed)
     return tl::unexpected(parsed.error());
-  if (const Status ok = settle(given, options); !ok) {
+  if (const Status ok = apply(given, options); !ok) {
     exit_code = 2;
     return tl::unexpected(program.located(ok.error()));
   }

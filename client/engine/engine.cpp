@@ -166,8 +166,8 @@ Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points,
 /// What registration measured from one frame to the next counts alone: not guesses, nor who may follow
 /// somebody.
 void Engine::Impl::judge_imu(StampNs stamp_ns, const OdometryStep& step) {
-  const bool measured = !external && step.overlap > 0 && step.converged && !step.doubtful && !step.jumped &&
-                        step.observed.head<3>().minCoeff() > kSeenRotation;
+  const bool measured = !external && step.overlap > 0 && step.converged && !step.doubtful &&
+                        !step.discontinuous && step.observed.head<3>().minCoeff() > kSeenRotation;
   std::optional<Eigen::Matrix3d> R_odom_imu;
   if (measured) R_odom_imu = step.T_odom_sensor.linear() * options.T_imu_sensor->linear().transpose();
   const bool believed = imu->believed() != nullptr;
@@ -220,16 +220,17 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.stamp_ns = image.stamp_ns;
   frame.clock_set_back = *set_by_ns < 0;
   frame.informative = placed->informative;
-  frame.method = step.method;
-  frame.converged = step.converged && !step.jumped && !step.doubtful;
+  frame.source = step.source;
+  frame.converged = step.converged && !step.discontinuous && !step.doubtful;
   frame.T_odom_sensor = step.T_odom_sensor;
   frame.odom_segment = step.segment;
   frame.residual_m = step.residual_m;
   frame.observed = step.observed;
   inputs.note(spread.fault, step.residual_m, step.strain);
   if (imu) judge_imu(image.stamp_ns, step);
-  doubt.travelled(image.stamp_ns, step, requests.motion_sd(),
-                  {inputs.contradicted(), !external && placed->informative && step.method == "guess"});
+  doubt.travelled(
+      image.stamp_ns, step, requests.motion_sd(),
+      {inputs.contradicted(), !external && placed->informative && step.source == PoseSource::guess});
   if (link.T_map_odom()) frame.T_map_sensor = *link.T_map_odom() * step.T_odom_sensor;
   if (const auto estimate = doubt.estimate(); estimate && frame.T_map_sensor)
     frame.covariance = estimate->covariance;

@@ -19,10 +19,8 @@ namespace liloc {
 struct FrameResult {
   StampNs stamp_ns = 0;
   bool informative = true;
-  std::string method;  ///< how its pose was found: "first", "icp", "ransac", "inertial", "standing",
-                       ///< "external", "guess"
-  bool converged =
-      true;  ///< measured, and no jump from the frame before (sight corrected what had been guessed)
+  PoseSource source = PoseSource::guess;
+  bool converged = true;  ///< measured, and without a discontinuity (sight corrected what had been guessed)
   double latency_ms = 0;
   Pose T_odom_sensor = Pose::Identity();
   std::uint32_t odom_segment = 0;

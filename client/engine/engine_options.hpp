@@ -17,8 +17,7 @@ struct EngineOptions {
   Camera camera;
   double min_range_m = 0.25, max_range_m = 8.5;
   double voxel_size_m = 0.05;  ///< paper, section 3.1.5
-  /// Upper bound between global registrations (paper, section 7.2, Table 5).
-  StampNs interval_ns = from_ms(800);
+  StampNs interval_ns = kRequestInterval;  ///< upper bound between global registrations
   StampNs reply_timeout_ns = from_ms(4000);  ///< a request without an answer for so long counts as unanswered
   LocalMethod local = LocalMethod::cloud;
   std::optional<Pose> T_imu_sensor;  ///< there is an IMU exactly where this is set

@@ -8,7 +8,7 @@ namespace liloc {
 /// coasting: located once, the server is silent; lost: located once, but the pose may be anywhere by now.
 enum class Tracking { searching, tracking, coasting, lost };
 
-/// Where odometry lies in the map (REP-105: corrections move map -> odom, odometry itself never jumps).
+/// Where odometry lies in the map (REP-105: corrections move map -> odom, odometry itself stays continuous).
 class MapLink {
  public:
   explicit MapLink(StampNs silent_after_ns) : silent_after_ns_(silent_after_ns) {}

@@ -31,23 +31,22 @@ std::size_t points_at(double voxel_size_m, std::size_t at_5_cm) {
 }  // namespace
 
 void RequestMaker::travelled(StampNs stamp_ns, const OdometryStep& step, bool informative) {
-  if (step.segment != last_.segment) {  // poses of the old segment say nothing about the new one
-    path_.clear();
-    path_m_ = turned_rad_ = 0;
-    unsteady_ns_ = 0;
-  } else if (travelled_) {
-    path_m_ += distance_m(step.T_odom_sensor, last_.T_odom_sensor);
-    turned_rad_ += angle_between_rad(step.T_odom_sensor, last_.T_odom_sensor);
+  if (!segment_ || step.segment != segment_->last.segment) {
+    segment_ = Segment{};
+  } else {
+    segment_->path_m += distance_m(step.T_odom_sensor, segment_->last.T_odom_sensor);
+    segment_->turned_rad += angle_between_rad(step.T_odom_sensor, segment_->last.T_odom_sensor);
   }
-  travelled_ = true;
-  last_ = step;
-  if (path_.size() >= kMostLocalPoses) path_.erase(path_.begin());
-  path_.push_back({stamp_ns, step.T_odom_sensor, informative});
+  segment_->last = step;
+  std::vector<LocalPose>& path = segment_->path;
+  if (path.size() >= kMostLocalPoses) path.erase(path.begin());
+  path.push_back({stamp_ns, step.T_odom_sensor, informative});
 }
 
 MotionSd RequestMaker::motion_sd() const {
-  return {std::hypot(kOdomSdRad, kOdomSdShare * turned_rad_, last_.sd_rad),
-          std::hypot(kOdomSdM, kOdomSdShare * path_m_, last_.sd_m)};
+  if (!segment_) return {kOdomSdRad, kOdomSdM};
+  return {std::hypot(kOdomSdRad, kOdomSdShare * segment_->turned_rad, segment_->last.sd_rad),
+          std::hypot(kOdomSdM, kOdomSdShare * segment_->path_m, segment_->last.sd_m)};
 }
 
 void RequestMaker::add_surroundings(const LocalMap& surroundings, StampNs since_ns,
@@ -74,13 +73,13 @@ Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap
   SpotRequest r;
   r.client_id = options_.client_id;
   r.seq = next_seq_++;
-  r.stamp_ns = path_.back().stamp_ns;
-  r.odom_segment = last_.segment;
-  r.T_odom_sensor = last_.T_odom_sensor;
+  r.stamp_ns = segment_->path.back().stamp_ns;
+  r.odom_segment = segment_->last.segment;
+  r.T_odom_sensor = segment_->last.T_odom_sensor;
   const MotionSd sd = motion_sd();
   r.odom_sd_rad = sd.rad;
   r.odom_sd_m = sd.m;
-  r.local_poses = std::exchange(path_, {});
+  r.local_poses = std::exchange(segment_->path, {});
   r.lpc = std::move(*lpc);
   r.voxel_size_m = options_.voxel_size_m;
   r.view = {options_.camera, options_.min_range_m, options_.max_range_m};
@@ -90,11 +89,11 @@ Result<SpotRequest> RequestMaker::make(const Cloud& cloud_sensor, const LocalMap
     r.up_sd_rad = imu->up_sd_rad();
   }
   r.cold = options_.cold;
-  if (r.odom_sd_m > kSteadySdM || r.odom_sd_rad > kSteadySdRad) unsteady_ns_ = r.stamp_ns;
+  if (r.odom_sd_m > kSteadySdM || r.odom_sd_rad > kSteadySdRad) segment_->unsteady_ns = r.stamp_ns;
   const StampNs oldest_ns = r.stamp_ns - kSubmapAge;
   if (options_.submap && !options_.cold)
-    add_surroundings(surroundings, located ? std::max(oldest_ns, unsteady_ns_) : oldest_ns, r);
-  path_m_ = turned_rad_ = 0;
+    add_surroundings(surroundings, located ? std::max(oldest_ns, segment_->unsteady_ns) : oldest_ns, r);
+  segment_->path_m = segment_->turned_rad = 0;
   return r;
 }
 

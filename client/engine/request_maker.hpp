@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "client/engine/engine_options.hpp"
@@ -29,13 +30,17 @@ class RequestMaker {
  private:
   void add_surroundings(const LocalMap& surroundings, StampNs since_ns, SpotRequest& request) const;
 
+  /// What belongs to one segment of the odometry: poses of another say nothing about it.
+  struct Segment {
+    OdometryStep last;
+    std::vector<LocalPose> path;        ///< since the last request
+    double path_m = 0, turned_rad = 0;  ///< likewise
+    StampNs unsteady_ns = 0;            ///< of the last request whose motion is not known well
+  };
+
   EngineOptions options_;
   std::uint64_t next_seq_ = 1;
-  std::vector<LocalPose> path_;  ///< since the last request
-  OdometryStep last_;
-  StampNs unsteady_ns_ = 0;  ///< of this segment's last request whose motion is not known well
-  bool travelled_ = false;
-  double path_m_ = 0, turned_rad_ = 0;  ///< since the last request
+  std::optional<Segment> segment_;  ///< empty before the first frame
 };
 
 }  // namespace liloc

@@ -9,7 +9,7 @@ namespace liloc {
 
 /// Defaults are by hand where nothing else is said.
 struct RequestScheduleOptions {
-  StampNs interval_ns = from_ms(800);  ///< upper bound between requests (paper, section 7.2, Table 5)
+  StampNs interval_ns = kRequestInterval;  ///< upper bound between requests
   /// Lower bound while nothing is verified; 0: a quarter of `interval_ns`. Not under `interval_ns`: no haste.
   StampNs searching_interval_ns = 0;
   StampNs reply_timeout_ns = from_ms(4000);

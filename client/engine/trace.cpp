@@ -8,8 +8,8 @@
 namespace liloc {
 namespace {
 
-constexpr StampNs kSettled = from_ms(10'000);  // answers come within seconds; by hand
-constexpr std::size_t kMostTimedOut = 64;      // later answers to older requests are ignored; by hand
+constexpr StampNs kFinalAfter = from_ms(10'000);  // answers come within seconds; by hand
+constexpr std::size_t kMostTimedOut = 64;         // later answers to older requests are ignored; by hand
 // What the files' columns are: proto-tests/replay reads them.
 constexpr char kLocalHeader[] = "stamp_ns,informative,method,converged,latency_ms,tx,ty,tz,qx,qy,qz,qw";
 constexpr char kSpotsHeader[] =
@@ -58,14 +58,15 @@ Status TraceWriter::on_frame(const FrameResult& frame) {
     corrections_.clear();
   }
   last_ns_ = frame.stamp_ns;
-  note(local_.append(fmt::format("{},{:d},{},{:d},{:.3f},{}", frame.stamp_ns, frame.informative, frame.method,
-                                 frame.converged, frame.latency_ms, numbers(frame.T_odom_sensor, ','))));
+  note(local_.append(fmt::format("{},{:d},{},{:d},{:.3f},{}", frame.stamp_ns, frame.informative,
+                                 name_of(frame.source), frame.converged, frame.latency_ms,
+                                 numbers(frame.T_odom_sensor, ','))));
   if (frame.T_map_sensor) {
     note(online_.append(tum_row(frame.stamp_ns, *frame.T_map_sensor)));
     if (frame.covariance) write_doubt(frame);
     frames_.push_back({frame.stamp_ns, frame.odom_segment, frame.T_odom_sensor, *frame.T_map_sensor});
   }
-  write_trajectory(frame.stamp_ns - kSettled);
+  write_trajectory(frame.stamp_ns - kFinalAfter);
   return status_;
 }
 

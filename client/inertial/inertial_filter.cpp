@@ -20,7 +20,7 @@ constexpr double kMountSdRad = 2e-4, kMountSdM = 5e-4;
 // about with so many m/s^2 and rad/s^2. It never came to 2 in 33 walks (DECISIONS.md); the rest by hand.
 constexpr double kMostStrain = 2, kFullDoubt = 6, kDoubtAccel = 4, kDoubtTurn = 10;
 // A new IMU may send another unit: it is doubted in full at first, and no more after a second of matches (14 at
-// 15 frames a second) that bear it out; by hand.
+// 15 frames a second) that support it; by hand.
 constexpr double kProving = 0.85, kProven = 0.1;
 // s; over longer steps nothing but the IMU leads to a match; by hand.
 constexpr double kLongestDoubted = 0.4;
@@ -117,13 +117,13 @@ void InertialFilter::predict(const std::vector<ImuSample>& samples) {
   state_.T_odom_imu = normalized(state_.T_odom_imu);
 }
 
-void InertialFilter::settle(const Pose& T_odom_imu, const Matrix6d& covariance) {
+void InertialFilter::update(const Pose& T_odom_imu, const Matrix6d& covariance) {
   Vector6d shift;
   shift.head<3>() = so3_log(T_odom_imu.linear() * state_.T_odom_imu.linear().transpose());
   shift.tail<3>() = T_odom_imu.translation() - state_.T_odom_imu.translation();
   const Matrix6d prior = P_.topLeftCorner<6, 6>(), certainty = prior.inverse();
-  surprise_ = kFade * surprise_ + shift.dot(certainty * shift);
-  expected_ = kFade * expected_ + 6 - (certainty * covariance).trace();
+  nis_ = kFade * nis_ + shift.dot(certainty * shift);
+  expected_nis_ = kFade * expected_nis_ + 6 - (certainty * covariance).trace();
   if (strain() < kMostStrain) unproven_ = unproven_ > kProven ? kProving * unproven_ : 0;
   // What is correlated with the pose follows it: regression of the state on the pose's error.
   const Eigen::Matrix<double, 18, 6> gain = P_.leftCols<6>() * certainty;

@@ -37,8 +37,9 @@ class InertialFilter {
   void predict(const std::vector<ImuSample>& samples);
   /// The pose at the last prediction's end is `T_odom_imu` with this covariance, [rotation; translation],
   /// odometry axes about the IMU: the outcome of a measurement and the prediction together.
-  void settle(const Pose& T_odom_imu, const Matrix6d& covariance);
-  /// The device is found elsewhere, or lost: pose and velocity are new and vague, biases and gravity stay.
+  void update(const Pose& T_odom_imu, const Matrix6d& covariance);
+  /// The device is found elsewhere, or lost: pose and velocity are new, with a wide prior; biases and gravity
+  /// stay.
   void place(const Pose& T_odom_imu, const Eigen::Vector3d& velocity_m_s, double velocity_sd_m_s);
 
   /// The pose stays where it is, though nobody knows whether the device does: its doubt goes on growing, by a
@@ -47,12 +48,12 @@ class InertialFilter {
   /// What the measurements taught may be off by more than their covariance says: people that they followed, a
   /// map that errs. It shows when nothing is measured, and adds up with the time and with its square.
   void loosen(double velocity_sd_m_s, double accel_sd_m_s2);
-  /// Adds to the pose's covariance, axes as `settle` has them.
+  /// Adds to the pose's covariance, axes as `update` has them.
   void widen(const Matrix6d& covariance) { P_.topLeftCorner<6, 6>() += covariance; }
 
   /// How far the measurements of the last second were from the predictions, against what was expected: about 1.
-  /// Where it is much more (a wrong mounting, wrong intrinsics), predictions are made vaguer.
-  [[nodiscard]] double strain() const { return expected_ > 0 ? surprise_ / expected_ : 1; }
+  /// Where it is much more (a wrong mounting, wrong intrinsics), predictions are widened.
+  [[nodiscard]] double strain() const { return expected_nis_ > 0 ? nis_ / expected_nis_ : 1; }
   [[nodiscard]] const InertialState& state() const { return state_; }
   /// Of the errors, in the order of the constants above.
   [[nodiscard]] const Matrix18d& covariance() const { return P_; }
@@ -64,8 +65,8 @@ class InertialFilter {
   InertialState state_;
   Matrix18d P_ = Matrix18d::Zero();
   double unproven_ = 1;  ///< share of doubt in an IMU whose predictions have not come true yet
-  double surprise_ = 0,
-         expected_ = 0;  ///< normalized innovation squared, and its mean for a right model; both fade
+  double nis_ = 0,
+         expected_nis_ = 0;  ///< normalized innovation squared, and its mean for a right model; both fade
 };
 
 }  // namespace liloc

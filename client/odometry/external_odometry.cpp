@@ -27,9 +27,9 @@ bool ExternalOdometry::continues(const OdometrySample& from, const OdometrySampl
   const StampNs gap_ns = to.stamp_ns - from.stamp_ns;
   const double dt = to_seconds(gap_ns);
   return gap_ns <= options_.gap_ns &&
-         distance_m(from.T_odom_base, to.T_odom_base) <= options_.jump_m + dt * options_.speed_m_s &&
+         distance_m(from.T_odom_base, to.T_odom_base) <= options_.discontinuity_m + dt * options_.speed_m_s &&
          angle_between_rad(from.T_odom_base, to.T_odom_base) <=
-             options_.jump_rad + dt * options_.turn_rate_rad_s;
+             options_.discontinuity_rad + dt * options_.turn_rate_rad_s;
 }
 
 /// What the device did until the clock of the odometry is known again, nobody knows.
@@ -87,7 +87,7 @@ void ExternalOdometry::place(const Entry& entry, const Pose& T_odom_base, Odomet
 
 OdometryStep ExternalOdometry::step(StampNs stamp_ns) {
   OdometryStep step;
-  step.method = "guess";
+  step.source = PoseSource::guess;
   step.converged = false;
   step.T_odom_sensor = T_odom_last_;
   step.segment = last_segment_;
@@ -114,7 +114,7 @@ OdometryStep ExternalOdometry::step(StampNs stamp_ns) {
     return step;
   }
   if (!placed_) return step;
-  step.method = "external";
+  step.source = PoseSource::external;
   step.converged = true;
   return step;
 }

@@ -7,7 +7,7 @@
 
 namespace liloc {
 
-/// A pose by the odometry of somebody else, in a frame of its own that never jumps.
+/// A pose by the odometry of somebody else, in a frame of its own that no correction moves.
 struct OdometrySample {
   StampNs stamp_ns = 0;
   Pose T_odom_base = Pose::Identity();
@@ -16,12 +16,12 @@ struct OdometrySample {
 
 /// Defaults are by hand where nothing else is said.
 struct ExternalOdometryOptions {
-  Pose T_base_sensor = Pose::Identity();       ///< where the depth sensor sits on what the odometry moves
-  StampNs keep_ns = from_ms(10'000);           ///< memory bound
-  StampNs gap_ns = from_ms(1000);              ///< without samples for longer, a new segment starts
-  StampNs reach_ns = from_ms(100);             ///< how far beyond the newest sample a pose is still guessed
-  double jump_m = 0.05, jump_rad = 0.05;       ///< a step beyond this ...
-  double speed_m_s = 5, turn_rate_rad_s = 10;  ///< ... and beyond what these allow is a jump: a new segment
+  Pose T_base_sensor = Pose::Identity();  ///< where the depth sensor sits on what the odometry moves
+  StampNs keep_ns = from_ms(10'000);      ///< memory bound
+  StampNs gap_ns = from_ms(1000);         ///< without samples for longer, a new segment starts
+  StampNs reach_ns = from_ms(100);        ///< how far beyond the newest sample a pose is still guessed
+  double discontinuity_m = 0.05, discontinuity_rad = 0.05;  ///< a step beyond this ...
+  double speed_m_s = 5, turn_rate_rad_s = 10;  ///< ... and beyond what these allow starts a new segment
 };
 
 /// Odometry that somebody else keeps (wheels, a legged robot's own estimator): poses at the frames' stamps, and
@@ -33,8 +33,8 @@ class ExternalOdometry {
   /// A covariance that cannot be one is taken for unknown. Errors: not finite, StampWatch's; the sample is then
   /// ignored.
   [[nodiscard]] Status add(const OdometrySample& sample);
-  /// Where the sensor is at a frame's stamp: "external" between two samples, "guess" a little beyond the newest
-  /// or where there is none near; the pose is then the last one and `placed` is false.
+  /// Where the sensor is at a frame's stamp: `external` between two samples, a guess a little beyond the
+  /// newest, or where there is none near; the pose is then the last one and `placed` is false.
   [[nodiscard]] OdometryStep step(StampNs stamp_ns);
   [[nodiscard]] bool placed() const { return placed_; }
   /// The growth of the covariance is counted from the last step on.

@@ -3,11 +3,6 @@
 #include <algorithm>
 
 namespace liloc {
-namespace {
-
-constexpr std::uint16_t kSaturated = 0xFFFF;  // some cameras mark a missing return by it
-
-}  // namespace
 
 DepthImage thinned(const DepthImage& image, int factor) {
   DepthImage small;
@@ -18,7 +13,7 @@ DepthImage thinned(const DepthImage& image, int factor) {
   for (int v = 0; v < image.height; v += factor)
     for (int u = 0; u < image.width; u += factor) {
       const std::uint16_t depth = image.at(u, v);
-      small.units.push_back(depth == kSaturated ? std::uint16_t{0} : depth);
+      small.units.push_back(is_return(depth) ? depth : std::uint16_t{0});
     }
   return small;
 }

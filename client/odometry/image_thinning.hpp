@@ -3,8 +3,8 @@
 
 namespace liloc {
 
-/// A depth image at 1/`factor` of the resolution by leaving pixels out (no averages across edges). Cameras that
-/// mark a missing return by the largest value get the usual 0.
+/// A depth image at 1/`factor` of the resolution by leaving pixels out (no averages across edges). What is no
+/// return (`is_return`) becomes 0.
 [[nodiscard]] DepthImage thinned(const DepthImage& image, int factor);
 /// The camera of such an image.
 [[nodiscard]] Camera thinned(const Camera& camera, int factor);

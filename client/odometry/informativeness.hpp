@@ -33,7 +33,7 @@ struct FrameSpread {
 
 [[nodiscard]] const char* name_of(FrameFault fault);
 
-/// Paper, section 5.3: frames whose depth spread suddenly jumps or falls say nothing about where the device is.
+/// Paper, section 5.3: frames whose depth spread suddenly rises or falls say nothing about where the device is.
 /// The limits adapt to the recent frames, so that a slow change of scene passes.
 class Informativeness {
  public:

@@ -5,7 +5,7 @@
 namespace liloc {
 namespace {
 
-constexpr double kVagueM = 0.15;  // a guess worse than that does not speak for a match; by hand
+constexpr double kWidePriorM = 0.15;  // a guess worse than that does not speak for a match; by hand
 // Where nobody moves the image looks through 0.2 % of the map at most. By hand; what they mark: DECISIONS.md.
 constexpr double kMovingShare = 0.03, kWrongShare = 0.05;
 // With less, a frame from somewhere within a metre fits in many places; by hand.
@@ -15,8 +15,8 @@ constexpr double kPriorWeight = 0.03;  // and a squared deviation from the guess
 
 }  // namespace
 
-bool MatchCheck::vague() const {
-  return guess_.sd_m() >= kVagueM;
+bool MatchCheck::wide_prior() const {
+  return guess_.sd_m() >= kWidePriorM;
 }
 
 LocalMap::View MatchCheck::view(const ScanMatch& match) const {
@@ -29,7 +29,7 @@ bool MatchCheck::believable(const ScanMatch& match) const {
   if (match.overlap < options_.min_overlap || turned > 0.05 + 4 * guess_.sd_rad() ||
       moved > 0.05 + 4 * guess_.sd_m())
     return false;
-  return !vague() || consistent(match);
+  return !wide_prior() || consistent(match);
 }
 
 bool MatchCheck::consistent(const ScanMatch& match) const {
@@ -46,9 +46,9 @@ bool MatchCheck::unhidden(const ScanMatch& match) const {
 }
 
 bool MatchCheck::doubtful(const ScanMatch& match) const {
-  if (vague())
+  if (wide_prior())
     return match.unobserved > 0 || match.overlap < kAmpleOverlap || view(match).refuted_share() > kWrongShare;
-  return !match.settled && view(match).refuted_share() > kMovingShare;
+  return !match.converged() && view(match).refuted_share() > kMovingShare;
 }
 
 double MatchCheck::evidence(const ScanMatch& match) const {
@@ -56,7 +56,7 @@ double MatchCheck::evidence(const ScanMatch& match) const {
 }
 
 double MatchCheck::merit(const ScanMatch& match) const {
-  return evidence(match) - kPriorWeight * guess_.surprise_of(match.T_map_sensor);
+  return evidence(match) - kPriorWeight * guess_.squared_mahalanobis(match.T_map_sensor);
 }
 
 }  // namespace liloc

@@ -22,11 +22,11 @@ class MatchCheck {
   [[nodiscard]] bool doubtful(const ScanMatch& match) const;
   /// By which matches compare: overlap, less what the view says against it.
   [[nodiscard]] double evidence(const ScanMatch& match) const;
-  /// The same less what the guess says against it, for matches from a vague one.
+  /// The same less what the guess says against it, for matches from a wide one.
   [[nodiscard]] double merit(const ScanMatch& match) const;
 
  private:
-  [[nodiscard]] bool vague() const;
+  [[nodiscard]] bool wide_prior() const;
   [[nodiscard]] LocalMap::View view(const ScanMatch& match) const;
 
   const LocalMap& map_;

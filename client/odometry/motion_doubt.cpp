@@ -33,7 +33,7 @@ void MotionDoubt::predict(double seconds, double accel_sd_m_s2, double turn_sd_r
   }
 }
 
-Vector6d MotionDoubt::settle(const Matrix6d& scene, const Vector6d& shift) {
+Vector6d MotionDoubt::update(const Matrix6d& scene, const Vector6d& shift) {
   const Matrix6d prior = pose(), certainty = prior.inverse();
   const Matrix6d covariance = (scene + certainty).inverse();
   const Eigen::Matrix<double, 12, 6> gain = P_.leftCols<6>() * certainty;

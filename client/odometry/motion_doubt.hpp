@@ -18,7 +18,7 @@ class MotionDoubt {
   void predict(double seconds, double accel_sd_m_s2, double turn_sd_rad_s2);
   /// The scene told so much of the pose (information, may be singular) and moved it by `shift`. By how much the
   /// rate was off as well, [rad/s; m/s]: 0 along what the scene did not show. After `predict`.
-  [[nodiscard]] Vector6d settle(const Matrix6d& scene, const Vector6d& shift);
+  [[nodiscard]] Vector6d update(const Matrix6d& scene, const Vector6d& shift);
   [[nodiscard]] Matrix6d pose() const { return P_.topLeftCorner<6, 6>(); }
 
  private:

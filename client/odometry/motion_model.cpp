@@ -22,7 +22,7 @@ constexpr double kFadingS =
     0.4;  // without an IMU a motion that is no longer seen dies away with this time constant
 constexpr double kGravity = 9.81;  // m/s^2, on Earth
 // What the filter starts from: m/s, rad/s, m/s^2. By hand.
-constexpr double kStoodVelocitySd = 0.05, kVagueVelocitySd = 0.5;
+constexpr double kStoodVelocitySd = 0.05, kUnknownVelocitySd = 0.5;
 constexpr double kCalibratedGyroSd = 5e-4, kCalibratedForceSd = 0.03;
 // What a blind stretch shows of the errors of velocity and gravity that matches had left:
 // client/inertial/DECISIONS.md.
@@ -134,7 +134,7 @@ MotionGuess MotionModel::by_preintegration(const FrameStep& step, const ImuTrack
   if (!filter_) {
     start_filter(step, imu);
   } else if (filter_ns_ != step.from_ns) {  // a gap in the samples
-    filter_->place(step.T_odom_from * T_imu_sensor_->inverse(), velocity_odom_, kVagueVelocitySd);
+    filter_->place(step.T_odom_from * T_imu_sensor_->inverse(), velocity_odom_, kUnknownVelocitySd);
     filter_->widen(doubt_.pose());
   }
   filter_->predict(imu.samples(step.from_ns, step.to_ns));
@@ -149,13 +149,13 @@ void MotionModel::learn(const FrameStep& step, const MotionGuess& guess, const M
   const Pose T_sensor_imu = T_imu_sensor_ ? T_imu_sensor_->inverse() : Pose::Identity();
   if (by_filter()) {
     const Matrix6d M = sensor_of_imu(T.linear() * T_sensor_imu.translation()).inverse();
-    filter_->settle(T * T_sensor_imu, M * measured.covariance * M.transpose());
+    filter_->update(T * T_sensor_imu, M * measured.covariance * M.transpose());
     doubt_.place(measured.covariance);
   }
   Vector6d shift, rate = Vector6d::Zero();
   shift << so3_log(T.linear() * guess.T_map_sensor.linear().transpose()),
       T.translation() - guess.T_map_sensor.translation();
-  if (!by_filter()) rate = doubt_.settle(measured.covariance.inverse() - guess.covariance.inverse(), shift);
+  if (!by_filter()) rate = doubt_.update(measured.covariance.inverse() - guess.covariance.inverse(), shift);
   if (step.anchored_ns != step.from_ns) return;  // the step began at a guess
   const double dt = to_seconds(step.to_ns - step.from_ns);
   if (by_imu_) {
@@ -180,7 +180,7 @@ void MotionModel::relocated(const MotionGuess& measured) {
   doubt_.place(measured.covariance);
   velocity_odom_ = velocity_imu_odom_ = turn_rate_ = Eigen::Vector3d::Zero();
   if (filter_)
-    filter_->place(measured.T_map_sensor * T_imu_sensor_->inverse(), velocity_odom_, kVagueVelocitySd);
+    filter_->place(measured.T_map_sensor * T_imu_sensor_->inverse(), velocity_odom_, kUnknownVelocitySd);
 }
 
 void MotionModel::fade(const FrameStep& step) {
@@ -193,12 +193,12 @@ void MotionModel::fade(const FrameStep& step) {
 
 void MotionModel::restart() {
   halt();
-  if (filter_) filter_->place(filter_->state().T_odom_imu, Eigen::Vector3d::Zero(), kVagueVelocitySd);
+  if (filter_) filter_->place(filter_->state().T_odom_imu, Eigen::Vector3d::Zero(), kUnknownVelocitySd);
   doubt_.restart();
 }
 
 void MotionModel::halt() {
-  if (filter_) filter_->stop(kVagueVelocitySd);
+  if (filter_) filter_->stop(kUnknownVelocitySd);
   velocity_odom_ = velocity_imu_odom_ = turn_rate_ = Eigen::Vector3d::Zero();
 }
 

@@ -12,7 +12,7 @@ namespace liloc {
 namespace {
 
 // By hand, where nothing else is said.
-constexpr double kVagueRad = 0.1, kPoorOverlap = 0.8;  // one turned by more may lead to a wrong match
+constexpr double kWidePriorRad = 0.1, kPoorOverlap = 0.8;  // one turned by more may lead to a wrong match
 constexpr double kReachM = 0.3, kReachSpeed = 2;  // m/s: nobody carries a device off faster while it is blind
 constexpr double kGyroTrustRad = 0.2;             // the gyro cannot be off by more over a bridged stretch
 // Of a pose that the scene showed along some axes only; by hand.
@@ -33,7 +33,7 @@ double largest_sd_m(const Matrix6d& covariance) {
 
 Odometry::Odometry(const OdometryOptions& options)
     : options_(options),
-      map_({.cell_m = options.cell_m}),
+      segment_(0, options.cell_m),
       motion_(options.T_imu_sensor, options.method == LocalMethod::cloud ? InertialMethod::preintegration
                                                                          : InertialMethod::algorithm1),
       standing_(options.camera) {}
@@ -41,12 +41,12 @@ Odometry::Odometry(const OdometryOptions& options)
 /// From the guess, or from all over its region where that is large and the frame hardly fits.
 std::optional<ScanMatch> Odometry::match_near(const std::vector<Surfel>& frame, const MotionGuess& guess,
                                               const MatchCheck& check, StampNs stamp_ns) const {
-  auto found = match_scan(map_, frame, guess, stamp_ns);
+  auto found = match_scan(segment_.map, frame, guess, stamp_ns);
   if (!found) return std::nullopt;
   std::optional<ScanMatch> best;
   if (check.believable(*found)) best = *found;
-  if (guess.sd_rad() > kVagueRad && found->overlap < kPoorOverlap)
-    for (const ScanMatch& wide : match_widely(map_, frame, guess, stamp_ns))
+  if (guess.sd_rad() > kWidePriorRad && found->overlap < kPoorOverlap)
+    for (const ScanMatch& wide : match_widely(segment_.map, frame, guess, stamp_ns))
       if (check.believable(wide) && check.unhidden(wide) && (!best || check.merit(wide) > check.merit(*best)))
         best = wide;
   log::debug(
@@ -55,15 +55,15 @@ std::optional<ScanMatch> Odometry::match_near(const std::vector<Surfel>& frame, 
       best ? "" : "not believed: ", found->overlap, found->paired, 1e3 * found->rmse_m, found->unobserved,
       found->iterations, 1e3 * distance_m(found->T_map_sensor, guess.T_map_sensor),
       degrees(angle_between_rad(found->T_map_sensor, guess.T_map_sensor)), 1e3 * guess.sd_m(),
-      degrees(guess.sd_rad()), map_.size());
+      degrees(guess.sd_rad()), segment_.map.size());
   return best;
 }
 
 std::optional<ScanMatch> Odometry::stand(const DepthImage& image, const MotionGuess& guess) {
   if (!standing_.has_reference()) return std::nullopt;
   // Who felt the device move, or saw it, does not believe what only looks the same.
-  if (guess.surprise_of(standing_.T_odom_reference()) > kMostSurprise) {
-    ++gone_;
+  if (guess.squared_mahalanobis(standing_.T_odom_reference()) > kChiSquareLimit) {
+    ++segment_.gone;
     return std::nullopt;
   }
   const StandingCheck check = standing_.compare(image);
@@ -71,7 +71,7 @@ std::optional<ScanMatch> Odometry::stand(const DepthImage& image, const MotionGu
       "standing: {}, share {:.2f}, {} tiles, known to {:.1f} mm, agree {:.2f}, moved {:.1f} mm {:.3f} deg",
       check.stands, check.share, check.tiles, 1e3 * check.sd_m, check.agree,
       1e3 * check.motion.tail<3>().norm(), degrees(check.motion.head<3>().norm()), check.explained);
-  gone_ = check.moved ? gone_ + 1 : 0;
+  segment_.gone = check.moved ? segment_.gone + 1 : 0;
   if (!check.stands) return std::nullopt;
   // Where the view says little, a guess that felt the motion says more.
   const Pose& T_reference = standing_.T_odom_reference();
@@ -91,14 +91,14 @@ std::optional<ScanMatch> Odometry::stand(const DepthImage& image, const MotionGu
   match.T_map_sensor.translation() = guess.T_map_sensor.translation() + step.tail<3>();
   match.observed = Matrix6d::Identity();
   match.overlap = match.paired = check.share;
-  match.settled = true;
+  match.stop = ScanStop::converged;
   return match;
 }
 
 /// The IMU is believed where both fit alike.
 std::optional<ScanMatch> Odometry::match_rival(const DepthImage& image, const std::vector<Surfel>& frame,
                                                const MotionGuess& rival, double evidence) const {
-  const MatchCheck check(map_, image, rival, options_);
+  const MatchCheck check(segment_.map, image, rival, options_);
   auto found = match_near(frame, rival, check, image.stamp_ns);
   if (!found || !check.consistent(*found) || !check.unhidden(*found)) return std::nullopt;
   if (check.evidence(*found) < evidence + kRivalAhead) return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<ScanMatch> Odometry::match_rival(const DepthImage& image, const st
 
 std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vector<Surfel>& frame,
                                          const FrameStep& from, MotionGuess& guess, OdometryStep& step) {
-  MatchCheck check(map_, image, guess, options_);
+  MatchCheck check(segment_.map, image, guess, options_);
   auto near = match_near(frame, guess, check, image.stamp_ns);
   const auto rival = motion_.rival(from, guess, !near);
   if (rival && options_.method == LocalMethod::cloud)
@@ -117,7 +117,7 @@ std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vec
       motion_.take_rival(from);
     }
   if (near) {
-    step.method = options_.method == LocalMethod::inertial ? "inertial" : "icp";
+    step.source = options_.method == LocalMethod::inertial ? PoseSource::inertial : PoseSource::icp;
     step.doubtful = check.doubtful(*near);
     return near;
   }
@@ -125,13 +125,13 @@ std::optional<ScanMatch> Odometry::match(const DepthImage& image, const std::vec
   if (options_.method == LocalMethod::inertial || image.stamp_ns - recovered_ns_ < options_.recover_ns)
     return std::nullopt;
   recovered_ns_ = image.stamp_ns;
-  const double reach_m = kReachM + kReachSpeed * to_seconds(image.stamp_ns - anchored_ns_);
-  for (const ScanMatch& candidate : relocate(map_, frame, image.stamp_ns, options_.seed)) {
+  const double reach_m = kReachM + kReachSpeed * to_seconds(image.stamp_ns - segment_.anchored_ns);
+  for (const ScanMatch& candidate : relocate(segment_.map, frame, image.stamp_ns, options_.seed)) {
     const double turned = angle_between_rad(candidate.T_map_sensor, guess.T_map_sensor);
     if (has_imu_ && turned > kGyroTrustRad) continue;
     if (distance_m(candidate.T_map_sensor, guess.T_map_sensor) > reach_m) continue;
     if (!check.consistent(candidate)) continue;
-    step.method = "ransac";
+    step.source = PoseSource::ransac;
     return candidate;
   }
   return std::nullopt;
@@ -146,17 +146,17 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
   step.observed.head<3>() = (R.transpose() * match.observed.topLeftCorner<3, 3>() * R).diagonal();
   step.observed.tail<3>() = (R.transpose() * match.observed.bottomRightCorner<3, 3>() * R).diagonal();
   const Matrix6d covariance = match.information.inverse();
-  const bool guessed = from.anchored_ns != from.from_ns || largest_sd_m(covariance_) > kGuessedSdM;
-  step.jumped = guessed && distance_m(match.T_map_sensor, guess.T_map_sensor) > options_.jump_m;
-  unmatched_ns_ = 0;
-  anchored_ns_ = from.to_ns;
-  const bool found = step.method == "ransac";
+  const bool guessed = from.anchored_ns != from.from_ns || largest_sd_m(segment_.covariance) > kGuessedSdM;
+  step.discontinuous = guessed && distance_m(match.T_map_sensor, guess.T_map_sensor) > options_.discontinuity_m;
+  segment_.unmatched_ns = 0;
+  segment_.anchored_ns = from.to_ns;
+  const bool found = step.source == PoseSource::ransac;
   if (found)
     motion_.relocated({match.T_map_sensor, covariance});
   else
     motion_.learn(from, guess, {match.T_map_sensor, covariance});
   // A wrong step is not taken back, and who follows somebody errs the same way again.
-  if (step.doubtful) slipped_ += guess.covariance.diagonal().cwiseSqrt();
+  if (step.doubtful) segment_.slipped += guess.covariance.diagonal().cwiseSqrt();
   tell_doubt(step);
   if (found) return;
   if (motion_.filter()) step.strain = motion_.filter()->strain();
@@ -167,14 +167,14 @@ void Odometry::accept(const ScanMatch& match, const FrameStep& from, const Motio
 }
 
 void Odometry::reckon(const MotionGuess& guess, StampNs stamp_ns, OdometryStep& step) {
-  step.method = "inertial";
+  step.source = PoseSource::inertial;
   step.T_odom_sensor = guess.T_map_sensor;
   tell_doubt(step);
-  anchored_ns_ = stamp_ns;
+  segment_.anchored_ns = stamp_ns;
 }
 
 void Odometry::coast(const MotionGuess& guess, const FrameStep& from, bool usable, OdometryStep& step) {
-  step.method = "guess";
+  step.source = PoseSource::guess;
   step.converged = false;
   step.T_odom_sensor = guess.T_map_sensor;
   tell_doubt(step);
@@ -184,64 +184,61 @@ void Odometry::coast(const MotionGuess& guess, const FrameStep& from, bool usabl
     motion_.halt();
   else
     motion_.fade(from);
-  if (!usable || map_.size() == 0) return;
-  if (unmatched_ns_ == 0) unmatched_ns_ = from.to_ns;
-  if (blind > longest && from.to_ns - unmatched_ns_ >= options_.give_up_ns) start_segment(from.to_ns);
+  if (!usable || segment_.map.size() == 0) return;
+  if (segment_.unmatched_ns == 0) segment_.unmatched_ns = from.to_ns;
+  if (blind > longest && from.to_ns - segment_.unmatched_ns >= options_.give_up_ns) start_segment(from.to_ns);
 }
 
 void Odometry::tell_doubt(OdometryStep& step) {
-  covariance_ = motion_.covariance();
-  const Vector6d variances = kLastingDoubt * (marked_ + covariance_).diagonal() + slipped_.cwiseAbs2();
+  segment_.covariance = motion_.covariance();
+  const Vector6d variances =
+      kLastingDoubt * (segment_.marked + segment_.covariance).diagonal() + segment_.slipped.cwiseAbs2();
   step.sd_rad = std::sqrt(variances.head<3>().maxCoeff());
   step.sd_m = std::sqrt(variances.tail<3>().maxCoeff());
 }
 
 void Odometry::start_segment(StampNs stamp_ns) {
-  log::warning("odometry lost for {:.1f} s: a new segment starts", to_seconds(stamp_ns - anchored_ns_));
+  log::warning("odometry lost for {:.1f} s: a new segment starts", to_seconds(stamp_ns - segment_.anchored_ns));
   begin_anew();
 }
 
 void Odometry::begin_anew() {
-  map_.clear();
+  segment_ = Segment(segment_.id + 1, options_.cell_m);
   standing_.forget();
-  ++segment_;
   motion_.restart();
-  covariance_.setZero();
-  marked_.setZero();
 }
 
 void Odometry::clock_set() {
   if (last_ns_ == 0) return;
-  for (StampNs* stamp : {&last_ns_, &unmatched_ns_, &stood_ns_, &anchored_ns_, &keyframe_ns_, &recovered_ns_})
-    *stamp = 0;
+  last_ns_ = recovered_ns_ = 0;
   begin_anew();
 }
 
 void Odometry::remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor) {
-  const bool due = image.stamp_ns - keyframe_ns_ >= options_.keyframe_ns || map_.size() == 0 ||
-                   distance_m(T_odom_sensor, T_odom_keyframe_) > options_.keyframe_m ||
-                   angle_between_rad(T_odom_sensor, T_odom_keyframe_) > options_.keyframe_rad;
+  const bool due = image.stamp_ns - segment_.keyframe_ns >= options_.keyframe_ns || segment_.map.size() == 0 ||
+                   distance_m(T_odom_sensor, segment_.T_odom_keyframe) > options_.keyframe_m ||
+                   angle_between_rad(T_odom_sensor, segment_.T_odom_keyframe) > options_.keyframe_rad;
   if (!due) return;
-  map_.carve(T_odom_sensor, image, options_.camera, options_.max_range_m);
-  map_.insert(T_odom_sensor, frame, image.stamp_ns);
-  keyframe_ns_ = image.stamp_ns;
-  T_odom_keyframe_ = T_odom_sensor;
+  segment_.map.carve(T_odom_sensor, image, options_.camera, options_.max_range_m);
+  segment_.map.insert(T_odom_sensor, frame, image.stamp_ns);
+  segment_.keyframe_ns = image.stamp_ns;
+  segment_.T_odom_keyframe = T_odom_sensor;
 }
 
 /// A reference stays while the device is near it: a frame in which somebody covers what shows that it stands
 /// does not make a new one.
 void Odometry::refer(const DepthImage& image, const OdometryStep& step) {
   standing_.next(image);
-  if (step.method == "standing") {
-    stood_ns_ = image.stamp_ns;
-    ++stood_;
+  if (step.source == PoseSource::standing) {
+    segment_.stood_ns = image.stamp_ns;
+    ++segment_.stood;
   }
-  if (step.method == "standing" || !step.converged || step.doubtful) return;
-  const bool left = gone_ >= (stood_ >= kProven ? kProven : 1);
-  if (standing_.has_reference() && !left && image.stamp_ns - stood_ns_ <= kReferAfter) return;
+  if (step.source == PoseSource::standing || !step.converged || step.doubtful) return;
+  const bool left = segment_.gone >= (segment_.stood >= kProven ? kProven : 1);
+  if (standing_.has_reference() && !left && image.stamp_ns - segment_.stood_ns <= kReferAfter) return;
   standing_.refer(step.T_odom_sensor);
-  stood_ns_ = image.stamp_ns;
-  stood_ = gone_ = 0;
+  segment_.stood_ns = image.stamp_ns;
+  segment_.stood = segment_.gone = 0;
 }
 
 OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& frame, bool usable,
@@ -249,22 +246,22 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
   OdometryStep step;
   has_imu_ = imu != nullptr;
   if (last_ns_ == 0) {
-    step.method = "first";
+    step.source = PoseSource::first;
     step.T_odom_sensor = T_odom_last_;
     step.converged = usable;
-    step.jumped = segment_ > 0;  // nobody saw the way from the last segment
-    anchored_ns_ = image.stamp_ns;
+    step.discontinuous = segment_.id > 0;  // nobody saw the way from the last segment
+    segment_.anchored_ns = image.stamp_ns;
   } else {
-    const FrameStep from{last_ns_, image.stamp_ns, anchored_ns_, T_odom_last_};
+    const FrameStep from{last_ns_, image.stamp_ns, segment_.anchored_ns, T_odom_last_};
     MotionGuess expected = motion_.guess(from, imu);
     // After a long time any corner may look like one of the map's.
-    if (usable && map_.size() > 0 && image.stamp_ns - anchored_ns_ > options_.bridge_ns)
+    if (usable && segment_.map.size() > 0 && image.stamp_ns - segment_.anchored_ns > options_.bridge_ns)
       start_segment(image.stamp_ns);
     std::optional<ScanMatch> matched;
     if (usable && options_.method == LocalMethod::cloud) matched = stand(image, expected);
     if (matched)
-      step.method = "standing";
-    else if (usable && map_.size() > 0 && options_.method != LocalMethod::dead_reckoning)
+      step.source = PoseSource::standing;
+    else if (usable && segment_.map.size() > 0 && options_.method != LocalMethod::dead_reckoning)
       matched = match(image, frame, from, expected, step);
     if (matched)
       accept(*matched, from, expected, imu, step);
@@ -273,14 +270,14 @@ OdometryStep Odometry::step(const DepthImage& image, const std::vector<Surfel>& 
     else
       coast(expected, from, usable, step);
   }
-  const bool first_of_segment = map_.size() == 0;
+  const bool first_of_segment = segment_.map.size() == 0;
   if (usable && (step.converged || first_of_segment)) remember(image, frame, step.T_odom_sensor);
   if (usable && first_of_segment) {
-    anchored_ns_ = image.stamp_ns;
-    unmatched_ns_ = 0;
+    segment_.anchored_ns = image.stamp_ns;
+    segment_.unmatched_ns = 0;
   }
   if (usable && options_.method == LocalMethod::cloud) refer(image, step);
-  step.segment = segment_;
+  step.segment = segment_.id;
   T_odom_last_ = step.T_odom_sensor;
   last_ns_ = image.stamp_ns;
   return step;

@@ -1,8 +1,8 @@
 #pragma once
-#include <string>
 
 #include "client/odometry/local_method.hpp"
 #include "client/odometry/motion_model.hpp"
+#include "client/odometry/pose_source.hpp"
 #include "client/odometry/standing_view.hpp"
 
 namespace liloc {
@@ -24,7 +24,7 @@ struct OdometryOptions {
   double min_overlap_lost = 0.25;     ///< the same where no guess speaks for the match, but the view agrees:
   double max_refuted_share = 0.18;    ///< of the map in view that the image may look through
   StampNs recover_ns = from_ms(300);  ///< between two attempts to find the place by features
-  double jump_m = 0.03;               ///< correction after a stretch without sight that is marked as a jump
+  double discontinuity_m = 0.03;      ///< correction after a stretch without sight that is marked
   double keyframe_m = 0.05, keyframe_rad = 0.035;
   StampNs keyframe_ns = from_ms(300);  ///< motion or time since the last keyframe that makes the next one
   std::uint64_t seed = 1;
@@ -33,10 +33,10 @@ struct OdometryOptions {
 /// What the odometry says of a frame.
 struct OdometryStep {
   Pose T_odom_sensor = Pose::Identity();
-  std::string method;     ///< "first", "icp", "ransac", "inertial", "standing", "guess"
-  bool converged = true;  ///< the pose was measured
-  bool doubtful = false;  ///< but may follow somebody who walks, or be one place of several
-  bool jumped = false;    ///< and sight, after a stretch without, corrected what had been guessed
+  PoseSource source = PoseSource::guess;
+  bool converged = true;       ///< the pose was measured
+  bool doubtful = false;       ///< but may follow somebody who walks, or be one place of several
+  bool discontinuous = false;  ///< and sight, after a stretch without, corrected what had been guessed
   std::uint32_t segment = 0;
   double overlap = 0;     ///< of the match; 0 for a guess
   double residual_m = 0;  ///< of the match, root mean square; 0 for a guess
@@ -59,14 +59,29 @@ class Odometry {
                                   ImuTrack* imu);
   /// The clock of the stamps was set: a new segment starts where the last frame was.
   void clock_set();
-  [[nodiscard]] const LocalMap& map() const { return map_; }
+  [[nodiscard]] const LocalMap& map() const { return segment_.map; }
   /// The uncertainty of the motion is counted from the last step on.
   void mark() {
-    marked_ = covariance_;
-    slipped_.setZero();
+    segment_.marked = segment_.covariance;
+    segment_.slipped.setZero();
   }
 
  private:
+  /// What belongs to one segment: a new one replaces it.
+  struct Segment {
+    Segment(std::uint32_t number, double cell_m) : id(number), map({.cell_m = cell_m}) {}
+    std::uint32_t id;
+    LocalMap map;
+    StampNs anchored_ns = 0;   ///< of the last matched frame
+    StampNs unmatched_ns = 0;  ///< of the first usable frame since then that fits nothing; 0: none
+    StampNs keyframe_ns = 0;
+    Pose T_odom_keyframe = Pose::Identity();
+    int stood = 0, gone = 0;  ///< frames at the reference, and frames in a row that surely are not
+    StampNs stood_ns = 0;     ///< of the last frame that stood where its reference was taken
+    Matrix6d covariance = Matrix6d::Zero(), marked = Matrix6d::Zero();  ///< of the last step, and at the mark
+    Vector6d slipped = Vector6d::Zero();  ///< deviations that doubtful steps since then may have left for good
+  };
+
   [[nodiscard]] std::optional<ScanMatch> match_near(const std::vector<Surfel>& frame, const MotionGuess& guess,
                                                     const MatchCheck& check, StampNs stamp_ns) const;
   /// At the reference's pose, where the view says that the device stands there.
@@ -88,21 +103,13 @@ class Odometry {
   void remember(const DepthImage& image, const std::vector<Surfel>& frame, const Pose& T_odom_sensor);
 
   OdometryOptions options_;
-  LocalMap map_;
+  Segment segment_;
   MotionModel motion_;
   StandingView standing_;
-  bool has_imu_ = false;  ///< this frame
-  std::uint32_t segment_ = 0;
-  StampNs last_ns_ = 0;       ///< of the last frame
-  StampNs unmatched_ns_ = 0;  ///< of the first usable frame since the last match that fits nothing; 0: none
-  int stood_ = 0, gone_ = 0;  ///< frames at the reference, and frames in a row that surely are not
-  StampNs stood_ns_ = 0;      ///< of the last frame that stood where its reference was taken
-  StampNs anchored_ns_ = 0;   ///< of the last matched frame
-  StampNs keyframe_ns_ = 0;
-  StampNs recovered_ns_ = 0;  ///< of the last attempt by features
-  Pose T_odom_last_ = Pose::Identity(), T_odom_keyframe_ = Pose::Identity();
-  Matrix6d covariance_ = Matrix6d::Zero(), marked_ = Matrix6d::Zero();  ///< of the last step, and at the mark
-  Vector6d slipped_ = Vector6d::Zero();  ///< deviations that doubtful steps since then may have left for good
+  bool has_imu_ = false;                 ///< this frame
+  StampNs last_ns_ = 0;                  ///< of the last frame
+  StampNs recovered_ns_ = 0;             ///< of the last attempt by features
+  Pose T_odom_last_ = Pose::Identity();  ///< of the last frame; a new segment goes on from there
 };
 
 }  // namespace liloc

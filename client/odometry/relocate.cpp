@@ -44,7 +44,7 @@ Cloud every_nth(const Cloud& cloud, std::size_t most) {
 /// Best first: by overlap, less what the guess says against the match.
 void sort_by_merit(std::vector<ScanMatch>& matches, const MotionGuess& guess) {
   const auto merit = [&](const ScanMatch& match) {
-    return match.overlap - kPriorWeight * guess.surprise_of(match.T_map_sensor);
+    return match.overlap - kPriorWeight * guess.squared_mahalanobis(match.T_map_sensor);
   };
   std::ranges::stable_sort(matches, std::greater{}, merit);
 }
@@ -105,7 +105,7 @@ std::vector<ScanMatch> relocate(const LocalMap& map, const std::vector<Surfel>& 
   for (const Candidate& candidate : feature_search(target, describe(target->cloud, describe_options), query,
                                                    describe(query.cloud, describe_options), search)) {
     const auto match = match_scan(map, frame, {candidate.T_map_sensor, kStartSdRad, kStartSdM}, now_ns);
-    if (match && match->settled) matches.push_back(*match);
+    if (match && match->converged()) matches.push_back(*match);
   }
   std::stable_sort(matches.begin(), matches.end(),
                    [](const ScanMatch& a, const ScanMatch& b) { return a.overlap > b.overlap; });

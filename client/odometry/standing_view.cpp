@@ -23,7 +23,7 @@ constexpr double kEdgeTilePx = 0.25;  // by hand
 constexpr double kFewestPairs = 4;    // of a tile, that show an edge
 constexpr int kWidestGap = 8;         // without returns: behind the rim of what stands a camera sees nothing
 constexpr int kEdgeGap = 2;           // pixels: between them may lie a mixed one
-constexpr float kJumpDeviations = 6, kJumpShare = 0.03F;  // of an edge: of noise, and of the range
+constexpr float kEdgeDeviations = 6, kEdgeShare = 0.03F;  // of an edge: of noise, and of the range
 constexpr double kLeverM = 2;    // at which a turn counts as a shift (ScanMatchOptions has the same)
 constexpr double kAgree = 3;     // deviations from standing still, beyond which a square shows something else
 constexpr double kFaint = 1e-3;  // information that keeps the solver from dividing by 0
@@ -111,9 +111,9 @@ void StandingView::find_edges() {
     if (a == 0 || gap > room) return;
     const int b = reference_.units[static_cast<std::size_t>(index + gap * step)];
     if (b == 0) return;
-    const auto jump = static_cast<float>(std::abs(a - b)), farther = static_cast<float>(std::max(a, b));
-    if (jump < kJumpShare * farther ||
-        jump < kJumpDeviations * noise_.sd_units(static_cast<std::uint16_t>(std::max(a, b))))
+    const auto height_units = static_cast<float>(std::abs(a - b)), farther = static_cast<float>(std::max(a, b));
+    if (height_units < kEdgeShare * farther ||
+        height_units < kEdgeDeviations * noise_.sd_units(static_cast<std::uint16_t>(std::max(a, b))))
       return;
     const auto first = static_cast<std::uint32_t>(v * width + u),
                second = static_cast<std::uint32_t>(index + gap * step);

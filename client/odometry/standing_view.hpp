@@ -63,12 +63,12 @@ class StandingView {
     Eigen::Vector3d mean, normal;  ///< sensor axes
     double normal_variance = 0;    ///< rad^2
   };
-  /// Where the reference's depth jumps between two pixels, two apart.
+  /// Where the reference's depth has an edge between two pixels, two apart.
   struct Edge {
     std::uint32_t near, far;  ///< indices of pixels
     int tile;
     std::uint8_t gap;  ///< pixels
-    bool upright;      ///< the jump is along u
+    bool upright;      ///< the edge is crossed along u
     bool far_after;    ///< the far pixel is the one to the right, or below
   };
   struct Evidence;

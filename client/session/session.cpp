@@ -35,13 +35,6 @@ SessionClock::Time now() {
   return std::chrono::steady_clock::now();
 }
 
-/// Of this computer: it tells units apart, nothing else.
-StampNs wall_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 struct Session::Impl {
@@ -227,7 +220,7 @@ bool Session::Impl::follows(const SpotReply& reply) {
 
 Status Session::Impl::push(SensorFrame frame) {
   if (stopped) return fail("{}: stopped: no more frames are taken", id());
-  if (const Status ok = check_unit_by(wall_ns(), frame.image.stamp_ns, "depth"); !ok) {
+  if (const Status ok = check_unit_by(wall_clock_ns(), frame.image.stamp_ns, "depth"); !ok) {
     report.frame_refused(ok.error().message);
     return fail("{}: {}", id(), ok.error().message);
   }
@@ -239,7 +232,7 @@ Status Session::Impl::push(SensorFrame frame) {
 template <class Sample>
 Status Session::Impl::push(const Sample& sample, const char* what, SessionReport::Counter refused) {
   if (stopped) return fail("{}: stopped: no more samples are taken", id());
-  if (const Status ok = check_unit_by(wall_ns(), sample.stamp_ns, what); !ok) {
+  if (const Status ok = check_unit_by(wall_clock_ns(), sample.stamp_ns, what); !ok) {
     report.samples_refused(refused, 1, ok.error().message);
     return fail("{}: {}", id(), ok.error().message);
   }

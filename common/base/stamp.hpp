@@ -21,6 +21,13 @@ constexpr StampNs from_seconds(double seconds) {
   return static_cast<StampNs>(seconds * kNsPerSecond);
 }
 
+/// This host's clock, which may be set at any time.
+[[nodiscard]] inline StampNs wall_clock_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
 /// Measures elapsed time on the steady clock; never compared with a stamp.
 class Stopwatch {
  public:

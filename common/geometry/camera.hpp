@@ -29,7 +29,8 @@ struct Camera {
   return units != 0 && units != 65535;
 }
 
-/// 16-bit z-depth, row-major; 0 = no return.
+/// 16-bit z-depth, row-major; 0 = no return. Whoever reads images from outside marks what is none
+/// (`mark_missing`).
 struct DepthImage {
   StampNs stamp_ns = 0;
   int width = 0, height = 0;

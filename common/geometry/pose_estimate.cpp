@@ -37,9 +37,13 @@ PoseEstimate carried(const PoseEstimate& before, const Pose& T_before_after, dou
   return after;
 }
 
-double surprise_of(const PoseEstimate& predicted, const PoseEstimate& seen) {
-  const Vector6d innovation = offset_of(predicted.T_map_sensor, seen.T_map_sensor);
-  return innovation.dot((predicted.covariance + seen.covariance).ldlt().solve(innovation));
+double squared_mahalanobis(const Vector6d& offset, const Matrix6d& covariance) {
+  return offset.dot(covariance.ldlt().solve(offset));
+}
+
+double squared_mahalanobis(const PoseEstimate& predicted, const PoseEstimate& seen) {
+  return squared_mahalanobis(offset_of(predicted.T_map_sensor, seen.T_map_sensor),
+                             predicted.covariance + seen.covariance);
 }
 
 }  // namespace liloc

@@ -22,8 +22,11 @@ struct PoseEstimate {
 [[nodiscard]] PoseEstimate carried(const PoseEstimate& before, const Pose& T_before_after, double sd_rad,
                                    double sd_m);
 
-/// Squared distance of the two over their covariances: 6 on average.
-[[nodiscard]] double surprise_of(const PoseEstimate& predicted, const PoseEstimate& seen);
-constexpr double kMostSurprise = 22.5;  ///< chi-square of six degrees of freedom, one in a thousand
+/// Squared Mahalanobis distance of an offset over its covariance, in the same axes: chi-square of six degrees
+/// of freedom, 6 on average, where the covariance is right.
+[[nodiscard]] double squared_mahalanobis(const Vector6d& offset, const Matrix6d& covariance);
+/// The same of two estimates whose errors are independent.
+[[nodiscard]] double squared_mahalanobis(const PoseEstimate& predicted, const PoseEstimate& seen);
+constexpr double kChiSquareLimit = 22.5;  ///< of six degrees of freedom, exceeded once in a thousand
 
 }  // namespace liloc

@@ -16,6 +16,9 @@ namespace liloc {
 /// Raised when a message changes its meaning; a server answers other versions with Reason::protocol_version.
 constexpr std::uint16_t kProtocolVersion = 2;
 
+/// A device asks at least so often (paper, section 7.2, Table 5).
+constexpr StampNs kRequestInterval = from_ms(800);
+
 /// How a cloud travels. Ids are added, never reused.
 enum class CloudCodec : std::uint8_t { draco = 1, octree = 2, voxel = 3 };
 /// In the order in which a client tries them.
@@ -43,7 +46,7 @@ struct LocalPose {
   bool informative = true;
 };
 
-/// "Where am I?", asked every 800 ms: the LPC of one frame and how the device moved since the last request.
+/// "Where am I?", asked every `kRequestInterval`: the LPC of one frame and how the device moved since the last request.
 struct SpotRequest {
   std::string client_id;
   std::uint64_t seq = 0;           ///< rises by one per request of a client session
@@ -74,17 +77,17 @@ struct SpotRequest {
 enum class SpotStatus : std::uint8_t { verified = 1, provisional = 2, refused = 3 };
 
 /// Why a reply is what it is. Ids are added, never reused. With the paper's verification (`--verify paper`)
-/// `confirmed`: at least two of its three checks hold; `corrected`: one holds, and this spot is the odd one;
-/// `awaiting_spots`: fewer than three spots; `inconsistent`: no check holds. With `--verify none` every pose
-/// that is found is `confirmed`.
+/// `confirmed`: at least two of its three checks hold, or one that this spot is part of; `corrected`: one holds,
+/// and this spot is the odd one; `awaiting_spots`: fewer than three spots; `inconsistent`: no check holds. With
+/// `--verify none` every pose that is found is `confirmed`.
 enum class Reason : std::uint8_t {
   none = 0,               ///< not decided yet; no server sends it
-  confirmed = 1,          ///< verified: by this spot and those before it, whose pose it bears out
+  confirmed = 1,          ///< verified: this spot's search led there too, or the pose followed so far holds on
   conclusive = 2,         ///< verified: by the first search of its segment alone, or cold
   corrected = 3,          ///< verified: elsewhere than this spot's own search, or than the pose followed so far
   awaiting_spots = 10,    ///< provisional: few searches so far and nothing else is amiss; or cold
   ambiguous = 11,         ///< provisional: this spot's search led to the likeliest place; not likely enough
-  inconsistent = 12,      ///< provisional: this spot's search led elsewhere than to the likeliest place
+  inconsistent = 12,      ///< provisional: the same, but this spot's search led elsewhere; see the advice for why
   weak = 13,              ///< provisional: of a pose that was verified before, which is in doubt by now
   no_gpc = 20,            ///< refused: no ceiling frame within 100 ms of the request's stamp
   not_found = 21,         ///< refused: no pose fits, or the server failed

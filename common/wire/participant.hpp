@@ -37,6 +37,9 @@ struct DomainOptions {
   int receive_buffer_kb = 4096;  ///< lowered, with a warning, to what net.core.rmem_max allows
 };
 
+/// The UDP port of a domain's server, which others find it at.
+[[nodiscard]] int server_port(int domain);
+
 /// Errors: domain out of range, an interface or peer that is no plain name.
 [[nodiscard]] Status check(const DomainOptions& options);
 

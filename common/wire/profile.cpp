@@ -11,10 +11,6 @@ namespace {
 
 constexpr int kMaxDomain = 230;  // ports of a higher domain exceed 65535
 
-int server_port(int domain) {
-  return 7410 + 250 * domain;
-}
-
 /// A name or an address goes into XML as it is: no quote, bracket or blank may pass.
 bool plain(std::string_view text) {
   return !text.empty() && text.size() < 128 && std::ranges::all_of(text, [](unsigned char c) {
@@ -76,6 +72,10 @@ int allowed_kb(int wanted_kb, const char* setting, const char* name) {
 }
 
 }  // namespace
+
+int server_port(int domain) {
+  return 7410 + 250 * domain;  // DDSI-RTPS 2.2, 9.6.1: PB + DG * domain + d1
+}
 
 Status check(const DomainOptions& options) {
   if (options.domain < 0 || options.domain > kMaxDomain)

@@ -26,6 +26,10 @@ enum class LidarState : std::uint8_t {
   clock_off = 7
 };
 [[nodiscard]] std::string_view name_of(LidarState state);
+/// Its frames count.
+[[nodiscard]] constexpr bool is_heard(LidarState state) {
+  return state == LidarState::ok || state == LidarState::slow;
+}
 
 struct LidarHealth {
   std::string id;

@@ -8,6 +8,7 @@ import check_version as check
 
 IDL = "struct A { long x; };  // metres\n"
 HEADER = (check.ROOT / "common/protocol/spot.hpp").read_text()
+STATUS = (check.ROOT / "common/wire/status.hpp").read_text()
 PROTOCOL = (check.IDL / "PROTOCOL.md").read_text()
 
 
@@ -43,8 +44,8 @@ class Problem(unittest.TestCase):
 
 class Document(unittest.TestCase):
     def test_it_tells_every_code_with_its_number(self):
-        for enum in ("SpotStatus", "Reason", "Advice", "CloudCodec"):
-            body = re.search(rf"enum class {enum} : std::uint8_t \{{(.*?)\}};", HEADER, re.S).group(1)
+        for enum in ("SpotStatus", "Reason", "Advice", "CloudCodec", "LidarState"):
+            body = re.search(rf"enum class {enum} : std::uint8_t \{{(.*?)\}};", HEADER + STATUS, re.S).group(1)
             codes = re.findall(r"(\w+) = (\d+)", body)
             self.assertTrue(codes)
             for name, number in codes:

@@ -123,29 +123,29 @@ Result<DriftRun> run_drift(const DeviceRecording& device, const DriftOptions& op
 
 void print_drift(const std::string& name, const DriftRun& run, bool frames) {
   const auto& f = run.frames;
-  double path = 0, good = 0, jump_m = 0;
+  double path = 0, good = 0, discontinuity_m = 0;
   std::vector<double> latency, step_mm, residual_mm;
   int icp = 0, standing = 0, ransac = 0, guess = 0, dull = 0;
   for (std::size_t i = 0; i < f.size(); ++i) {
     latency.push_back(f[i].latency_ms);
     if (f[i].residual_m > 0) residual_mm.push_back(1e3 * f[i].residual_m);
-    icp += f[i].method == "icp" || f[i].method == "inertial";
-    standing += f[i].method == "standing";
-    ransac += f[i].method == "ransac";
-    guess += f[i].method == "guess";
+    icp += f[i].source == PoseSource::icp || f[i].source == PoseSource::inertial;
+    standing += f[i].source == PoseSource::standing;
+    ransac += f[i].source == PoseSource::ransac;
+    guess += f[i].source == PoseSource::guess;
     dull += !f[i].informative;
     if (frames) {
       const Pose E = run.error(0, i);
       const double step_m = i > 0 ? run.error(i - 1, i).translation().norm() : 0;
-      fmt::print("{:4d} {:8} inf {} conv {} seg {} step {:.1f} mm err {:.1f} mm {:.3f} deg\n", i, f[i].method,
-                 f[i].informative, f[i].converged, f[i].odom_segment, 1e3 * step_m,
+      fmt::print("{:4d} {:8} inf {} conv {} seg {} step {:.1f} mm err {:.1f} mm {:.3f} deg\n", i,
+                 name_of(f[i].source), f[i].informative, f[i].converged, f[i].odom_segment, 1e3 * step_m,
                  1e3 * E.translation().norm(), degrees(rotation_angle_rad(E)));
     }
     if (i == 0) continue;
     path += distance_m(run.truth[i], run.truth[i - 1]);
     const Pose E = run.error(i - 1, i);
     step_mm.push_back(1e3 * E.translation().norm());
-    if (f[i].converged) jump_m = std::max(jump_m, E.translation().norm());
+    if (f[i].converged) discontinuity_m = std::max(discontinuity_m, E.translation().norm());
     good += degrees(rotation_angle_rad(E)) <= 3 && E.translation().norm() <= 0.1;
   }
   const Pose end = run.error(0, f.size() - 1);
@@ -161,8 +161,8 @@ void print_drift(const std::string& name, const DriftRun& run, bool frames) {
       name, path, 1e3 * end.translation().norm(), 100 * end.translation().norm() / std::max(path, 0.1),
       degrees(rotation_angle_rad(end)), 1e3 * spread.trajectory_m, 1e3 * spread.second_median_m,
       1e3 * spread.second_p90_m, degrees(spread.second_median_rad), good / static_cast<double>(f.size() - 1),
-      quantile(step_mm, 0.5), 1e3 * jump_m, quantile(latency, 0.5), quantile(latency, 0.9), icp, standing,
-      ransac, guess, dull, f.back().odom_segment + 1, run.worst_up_deg,
+      quantile(step_mm, 0.5), 1e3 * discontinuity_m, quantile(latency, 0.5), quantile(latency, 0.9), icp,
+      standing, ransac, guess, dull, f.back().odom_segment + 1, run.worst_up_deg,
       run.lpc_bytes / static_cast<std::size_t>(std::max(run.requests, 1)),
       run.extra_bytes / static_cast<std::size_t>(std::max(run.requests, 1)), quantile(residual_mm, 0.5),
       1e3 * run.cpu_s / seconds, run.motions_within, run.motions,

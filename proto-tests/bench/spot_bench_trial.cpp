@@ -98,7 +98,7 @@ class Trial {
   void answer_due(StampNs now_ns) {
     const auto all_seen = [&](StampNs stamp_ns) {
       return std::ranges::all_of(recent_, [&](const auto& frames) {
-        return !frames.empty() && frames.back().stamp_ns >= stamp_ns - GlobalCloudOptions{}.match_ns;
+        return !frames.empty() && frames.back().stamp_ns >= stamp_ns - cloud_.match_ns();
       });
     };
     for (std::size_t i = 0; i < devices_.size(); ++i)
@@ -193,7 +193,7 @@ class Trial {
     };
     for (std::size_t i = 0; i < recent_.size(); ++i) {
       const auto nearest = std::ranges::min_element(recent_[i], {}, age);
-      if (nearest == recent_[i].end() || age(*nearest) > GlobalCloudOptions{}.match_ns) continue;
+      if (nearest == recent_[i].end() || age(*nearest) > cloud_.match_ns()) continue;
       const GlobalLidar& lidar = stage_.site.global_lidars[i];
       ceiling.push_back({*nearest, lidar.camera, lidar.T_map_sensor});
     }

@@ -89,10 +89,7 @@ class Run {
       : script_(script), options_(options), clients_(clients) {
     const double lead_s = 2.5 + 0.01 * clients;  // for processes and participants
     clock_.start = std::chrono::steady_clock::now() + std::chrono::nanoseconds(from_seconds(lead_s));
-    clock_.start_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                          std::chrono::system_clock::now().time_since_epoch())
-                          .count() +
-                      from_seconds(lead_s);
+    clock_.start_ns = wall_clock_ns() + from_seconds(lead_s);
     clock_.ceiling_from_s = -lead_s;
     clock_.from_s = LoadOptions::warmup_s(clients);
     clock_.to_s = clock_.from_s + options.seconds;

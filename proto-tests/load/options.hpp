@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "common/protocol/spot.hpp"
 #include "proto-tests/sim/options.hpp"
 
 namespace liloc::load {
@@ -13,7 +14,7 @@ struct LoadOptions {
   std::filesystem::path programs;  ///< folder of liloc-server
   std::vector<int> clients{20};    ///< a run for each, 1..1000
   double seconds = 30;             ///< measured, after the warm-up
-  double interval_ms = 800;        ///< between a device's requests
+  double interval_ms = to_ms(kRequestInterval);  ///< between a device's requests
   std::uint64_t seed = 7;
   sim::SiteKind kind = sim::SiteKind::office;
   int people = 2, lidars = 3;

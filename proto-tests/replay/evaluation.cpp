@@ -178,7 +178,7 @@ DoubtScore score_doubt(const Csv& csv, const std::vector<StampedPose>& online, c
     if (i < 0 || !covariance || !poses.contains(*stamp_ns)) continue;
     const PoseEstimate told{poses[*stamp_ns], *covariance};
     const Pose& T_true = truth.pose(static_cast<std::size_t>(i));
-    nees.push_back(surprise_of(told, {T_true, Matrix6d::Zero()}));
+    nees.push_back(squared_mahalanobis(told, {T_true, Matrix6d::Zero()}));
     beyond += nees.back() > 22.5;
     untold += !error_of(T_true, told.T_map_sensor).within(10, 0.3) && told.sd_m() <= 0.3 &&
               told.sd_rad() <= radians(10);

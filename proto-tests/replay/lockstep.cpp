@@ -152,7 +152,7 @@ class Lockstep {
     const auto oldest = std::min_element(newest_ceiling_ns_.begin(), newest_ceiling_ns_.end());
     // As in the server: a LiDAR whose last frame still counts for the stamp need not show a newer one.
     const auto all_seen = [&](StampNs stamp_ns) {
-      return oldest == newest_ceiling_ns_.end() || *oldest >= stamp_ns - GlobalCloudOptions{}.match_ns;
+      return oldest == newest_ceiling_ns_.end() || *oldest >= stamp_ns - cloud_.match_ns();
     };
     for (auto& device : devices_)
       while (!device->held.empty()) {

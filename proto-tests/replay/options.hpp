@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/result.hpp"
+#include "common/protocol/spot.hpp"
 
 namespace liloc::replay {
 
@@ -14,7 +15,7 @@ struct ReplayOptions {
   std::filesystem::path recording, out;
   bool lockstep = false;
   std::uint64_t seed = 1;
-  double interval_ms = 800, voxel_m = 0.05;
+  double interval_ms = to_ms(kRequestInterval), voxel_m = 0.05;
   std::string method = "liloc", local = "cloud", features = "fpfh";
   std::string verify, icp;  ///< empty: the method's own
   double sampling = 0.5;

@@ -16,13 +16,16 @@
 #include <thread>
 #include <utility>
 
+#include "common/base/stop_signals.hpp"
+#include "common/wire/participant.hpp"
+
 extern char** environ;
 
 namespace liloc::replay {
 namespace {
 
-std::atomic<bool> stop_flag{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+std::optional<StopSignals> stop_signals;  // made before the program's first thread, never changed again
+std::atomic<bool> stop_came{false};
 
 /// File actions of posix_spawn, freed on every way out.
 struct SpawnSetup {
@@ -72,8 +75,12 @@ Result<Child> Child::start(const std::vector<std::string>& command, const std::f
                                    O_WRONLY | O_CREAT | O_TRUNC, 0644);
   posix_spawn_file_actions_adddup2(&setup.actions, STDOUT_FILENO, STDERR_FILENO);
   // Its own process group: Ctrl-C reaches the owner alone, which then stops its children in order.
-  posix_spawnattr_setflags(&setup.attributes, POSIX_SPAWN_SETPGROUP);
+  // It does not inherit that stop signals are blocked here.
+  posix_spawnattr_setflags(&setup.attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
   posix_spawnattr_setpgroup(&setup.attributes, 0);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&setup.attributes, &none);
 
   std::vector<char*> arguments;
   arguments.reserve(command.size() + 1);
@@ -157,7 +164,7 @@ std::string last_lines(const std::filesystem::path& file, std::size_t count) {
 }
 
 Result<int> free_domain() {
-  // A participant with index 0 listens on port 7410 + 250 * domain; beyond 100 lie the ephemeral ports.
+  // Beyond domain 100 lie the ephemeral ports.
   const int first = static_cast<int>(getpid()) % 40;
   for (int i = 0; i < 40; ++i) {
     const int domain = 60 + (first + i) % 40;
@@ -166,7 +173,7 @@ Result<int> free_domain() {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(static_cast<std::uint16_t>(7410 + 250 * domain));
+    address.sin_port = htons(static_cast<std::uint16_t>(wire::server_port(domain)));
     const int bound = bind(handle, reinterpret_cast<const sockaddr*>(&address), sizeof address);
     close(handle);
     if (bound == 0) return domain;
@@ -181,15 +188,12 @@ std::filesystem::path program_folder() {
 }
 
 void catch_stop_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_flag.store(true); };
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  stop_signals.emplace();
 }
 
 bool stop_requested() {
-  return stop_flag.load();
+  if (!stop_came && stop_signals && stop_signals->within(std::chrono::milliseconds(0)) != 0) stop_came = true;
+  return stop_came;
 }
 
 }  // namespace liloc::replay

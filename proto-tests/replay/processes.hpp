@@ -61,7 +61,8 @@ class Child {
 /// The folder of the running program, where its siblings are.
 [[nodiscard]] std::filesystem::path program_folder();
 
-/// From now on SIGINT and SIGTERM do not end this process; `stop_requested` says that one came.
+/// From now on SIGINT and SIGTERM do not end this process; `stop_requested` says that one came. To be called
+/// before the program's first thread (`StopSignals`).
 void catch_stop_signals();
 [[nodiscard]] bool stop_requested();
 

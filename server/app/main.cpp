@@ -1,13 +1,12 @@
 // liloc-server: exit code 0 after an ordered stop, 1 when the network fails it, 2 for bad usage or a bad site.
 #include <malloc.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
 #include <chrono>
 #include <exception>
 
 #include "common/base/stop_signals.hpp"
+#include "common/command/log_setup.hpp"
 #include "common/recording/recording.hpp"
 #include "server/app/json_line.hpp"
 #include "server/app/server.hpp"
@@ -15,30 +14,8 @@
 namespace liloc {
 namespace {
 
-void open_log(log::Level level, bool json) {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("liloc-server"));
-  spdlog::set_pattern(json ? "%v" : "%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
-  const auto as_spdlog = [](log::Level l) {
-    switch (l) {
-      case log::Level::debug:
-        return spdlog::level::debug;
-      case log::Level::info:
-        return spdlog::level::info;
-      case log::Level::warning:
-        return spdlog::level::warn;
-      case log::Level::error:
-        return spdlog::level::err;
-    }
-    return spdlog::level::info;
-  };
-  spdlog::set_level(as_spdlog(level));
-  spdlog::flush_on(spdlog::level::debug);
-  log::set_sink([as_spdlog, json](log::Level l, std::string_view line) {
-    if (json)
-      spdlog::log(as_spdlog(l), "{}", json_line(std::chrono::system_clock::now(), l, line));
-    else
-      spdlog::log(as_spdlog(l), "{}", line);
-  });
+std::string as_json(log::Level level, std::string_view line) {
+  return json_line(std::chrono::system_clock::now(), level, line);
 }
 
 int run(int argc, char** argv) {
@@ -51,7 +28,8 @@ int run(int argc, char** argv) {
     if (!options.error().message.empty()) fmt::print(stderr, "liloc-server: {}\n", options.error().message);
     return exit_code;
   }
-  open_log(options->log_level, options->log_json);
+  log::set_sink(command::stderr_sink("liloc-server", options->log_level,
+                                     options->log_json ? as_json : command::LineFormat{}));
   const auto site = read_site(options->site_file);
   if (!site) {
     log::error("{}", site.error().message);

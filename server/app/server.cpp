@@ -36,12 +36,6 @@ class HeapTrimmer {
   std::chrono::steady_clock::time_point next_;
 };
 
-StampNs wall_clock_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 /// Nothing that is worth a write: within a tenth, at 3 m.
 bool much_the_same(const std::vector<DepthNoise>& a, const std::vector<DepthNoise>& b) {
   return a.size() == b.size() && std::ranges::equal(a, b, [](const DepthNoise& x, const DepthNoise& y) {
@@ -130,7 +124,10 @@ Status Server::open_streams(const ServerOptions& options) {
   backend.forget = [this](const std::string& client_id) { localizer_.forget(client_id); };
   // A LiDAR whose last frame still counts for the stamp need not show a newer one: people move in between,
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
-  backend.ready = [this](StampNs stamp_ns) { return ingest_->seen(stamp_ns - GlobalCloudOptions{}.match_ns); };
+  backend.seen_until = [this]() -> std::optional<StampNs> {
+    const auto seen = ingest_->seen_until();
+    return seen ? std::optional(*seen + global_cloud_.match_ns()) : std::nullopt;
+  };
   backend.ceiling_now = [this](std::chrono::steady_clock::time_point at) { return ingest_->ceiling_now(at); };
   backend.on_stage = [this](Stage stage, double seconds) { metrics_.staged(stage, seconds); };
   backend.on_answer = [this](const SpotReply& reply) { metrics_.answered(reply); };
@@ -164,9 +161,8 @@ web::ServerFacts Server::facts() const {
   facts.service = service_->counters();
   facts.samples_lost = dispatcher_->samples_lost();
   const auto health = ingest_->health();
-  const auto activity = ingest_->activity();
-  for (std::size_t i = 0; i < health.size(); ++i)
-    facts.lidars.push_back({health[i], activity[i].age_s, activity[i].valid_share});
+  const auto ages_s = ingest_->ages_s();
+  for (std::size_t i = 0; i < health.size(); ++i) facts.lidars.push_back({health[i], ages_s[i]});
   return facts;
 }
 

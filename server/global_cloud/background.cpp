@@ -88,9 +88,9 @@ Background::Kind Background::learn(std::size_t i, float units, std::uint32_t now
   }
   if (pixel->candidates < 255) ++pixel->candidates;
   const bool farther = pixel->surface > 0 && nearer < 0, gone = farther && pixel->candidates >= 2;
-  const bool settled = lasted(pixel->candidate_since_ms, now_ms, options_.settle_seconds);
+  const bool absorbed = lasted(pixel->candidate_since_ms, now_ms, options_.absorb_seconds);
   const bool more = pixel->surface == 0 && continues_a_neighbour(i, units);
-  if (!gone && !settled && !more) return farther ? Kind::farther : Kind::nearer;
+  if (!gone && !absorbed && !more) return farther ? Kind::farther : Kind::nearer;
   replace(pixel, units);
   return Kind::still;
 }
@@ -101,12 +101,12 @@ void Background::miss(Pixel* pixel, std::uint32_t now_ms) {
   pixel->missing = true;
   if (pixel->missed < kMostMissed) ++pixel->missed;
   if (lasted(pixel->missing_since_ms, now_ms, options_.forget_seconds) &&
-      surprise_of_missing(*pixel) >= static_cast<float>(options_.forget_surprise))
+      surprisal_of_missing(*pixel) >= static_cast<float>(options_.forget_surprisal))
     replace(pixel, 0);
 }
 
 /// Had each frame its own chance of a return.
-float Background::surprise_of_missing(const Pixel& pixel) const {
+float Background::surprisal_of_missing(const Pixel& pixel) const {
   const float lost = std::clamp(1 - 1 / pixel.gap, kLeastLost, static_cast<float>(kMostMissing));
   return -static_cast<float>(pixel.missed) * std::log(lost);
 }

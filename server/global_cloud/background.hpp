@@ -9,12 +9,12 @@ namespace liloc {
 
 /// Defaults are by hand where nothing else is said.
 struct BackgroundOptions {
-  double settle_seconds = 2.0;  ///< what stands still for so long is part of the room (again)
+  double absorb_seconds = 2.0;  ///< what stands still for so long is part of the room (again)
   double tolerance_m = 0.06;    ///< depths this close, plus 1 % of the depth, are the same surface ...
   double tolerance_sigmas = 4;  ///< ... and those that the sensor's noise explains
   double forget_seconds = 1.0;  ///< a surface without any return for so long is forgotten ...
   /// ... if that is so unlikely (-ln, 1 in 1100) for how often the pixel has returns.
-  double forget_surprise = 7;
+  double forget_surprisal = 7;
   int most_averaged = 30;       ///< frames in a pixel's running mean
   double hold_m = 0.01;         ///< means that moved by less, plus 0.3 % of the depth, are shown as they were
   double fresh_share = 0.004;   ///< so much of the image changed: the room is to be derived anew at once ...
@@ -79,7 +79,7 @@ class Background {
   void show(std::size_t i);
   [[nodiscard]] bool gained() const;
   void miss(Pixel* pixel, std::uint32_t now_ms);
-  [[nodiscard]] float surprise_of_missing(const Pixel& pixel) const;  ///< -ln of its chance
+  [[nodiscard]] float surprisal_of_missing(const Pixel& pixel) const;  ///< -ln of its chance
   void measure();  ///< takes the frame into the sensor's noise
   void replace(Pixel* pixel, float units);
 

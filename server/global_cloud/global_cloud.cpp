@@ -44,7 +44,6 @@ Status GlobalCloud::add_depth(std::size_t lidar, DepthImage image) {
   if (watch.last_ns && image.stamp_ns <= *watch.last_ns && !clock_set_back(lidar, image.stamp_ns))
     return fail("{}: stamp {} is not newer than the last, {}", info.id, image.stamp_ns, *watch.last_ns);
   watch.last_ns = image.stamp_ns;
-  mark_missing(image);
   keep(lidar, watched(lidar, std::move(image)));
   return {};
 }

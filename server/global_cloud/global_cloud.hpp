@@ -51,6 +51,8 @@ class GlobalCloud {
   void prepare();
 
   [[nodiscard]] const Site& site() const { return site_; }
+  /// How far a frame may be from a request's stamp.
+  [[nodiscard]] StampNs match_ns() const { return options_.match_ns; }
 
   /// What an earlier run learned of each LiDAR, in the site's order; before the first frame.
   void set_known_noise(const std::vector<DepthNoise>& known);

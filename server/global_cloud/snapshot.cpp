@@ -116,7 +116,7 @@ const Target& Snapshot::target() const {
       target_.views.push_back(frame->view());
       append(moving_map, frame->moving_map());
     }
-    target_.present = std::make_shared<const Present>(target_.surfaces, target_.views, moving_map);
+    target_.dynamic = std::make_shared<const DynamicRegions>(target_.surfaces, target_.views, moving_map);
     has_target_ = true;
   });
   return target_;

@@ -23,12 +23,6 @@ bool focal_differs(const Camera& a, const Camera& b) {
   return std::abs(a.fx / b.fx - 1) > 0.01 || std::abs(a.fy / b.fy - 1) > 0.01;
 }
 
-StampNs wall_clock_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 /// A line for the log; `doctor` has the remedies.
 void report(const wire::LidarHealth& health, double rate_hz) {
   switch (health.state) {
@@ -68,7 +62,6 @@ struct Ingest::Lidar {
   LineLimit lines{}, clock_lines{};
   bool camera_reported = false, correction_reported = false;
   StampNs newest_ns = 0;  ///< by the site's clock
-  double valid_share = 0;
 };
 
 Ingest::Ingest(FrameSink sink) : sink_(std::move(sink)) {}
@@ -124,7 +117,6 @@ void Ingest::take(std::size_t index, StampNs stamp_ns, const FrameContent& conte
   {
     const std::scoped_lock lock(mutex_);
     lidars_[index]->monitor.on_frame(now, content);
-    lidars_[index]->valid_share = content.returns;
     if (!site_stamp_ns) return;
     lidars_[index]->newest_ns = *site_stamp_ns;
   }
@@ -153,7 +145,7 @@ void Ingest::check_camera(std::size_t index, const Result<Camera>& info) {
 /// Its lock held.
 wire::LidarHealth Ingest::assess(std::size_t index, Clock::time_point now) const {
   wire::LidarHealth health = lidars_[index]->monitor.assess(now);
-  const ClockOffset offset = clocks_.offset(index);
+  const LidarClock offset = clocks_.offset(index);
   health.clock_offset_s = to_seconds(offset.ahead_ns);
   health.clock_corrected = offset.corrected;
   if (offset.left_out && health.state != wire::LidarState::waiting &&
@@ -196,12 +188,12 @@ std::vector<wire::LidarHealth> Ingest::health() const {
   return health;
 }
 
-std::vector<LidarActivity> Ingest::activity() const {
+std::vector<std::optional<double>> Ingest::ages_s() const {
   const auto now = Clock::now();
   const std::scoped_lock lock(mutex_);
-  std::vector<LidarActivity> activity;
-  for (const auto& lidar : lidars_) activity.push_back({lidar->monitor.age_s(now), lidar->valid_share});
-  return activity;
+  std::vector<std::optional<double>> ages_s;
+  for (const auto& lidar : lidars_) ages_s.push_back(lidar->monitor.age_s(now));
+  return ages_s;
 }
 
 StampNs Ingest::ceiling_now(Clock::time_point at) const {
@@ -209,15 +201,15 @@ StampNs Ingest::ceiling_now(Clock::time_point at) const {
   return clocks_.now(at).value_or(0);
 }
 
-bool Ingest::seen(StampNs stamp_ns) const {
+std::optional<StampNs> Ingest::seen_until() const {
   const auto now = Clock::now();
   const std::scoped_lock lock(mutex_);
+  std::optional<StampNs> until;
   for (std::size_t i = 0; i < lidars_.size(); ++i) {
-    if (lidars_[i]->newest_ns >= stamp_ns) continue;
-    const auto state = assess(i, now).state;  // nobody waits for one that is out
-    if (state == wire::LidarState::ok || state == wire::LidarState::slow) return false;
+    const StampNs newest_ns = lidars_[i]->newest_ns;
+    if ((!until || newest_ns < *until) && wire::is_heard(assess(i, now).state)) until = newest_ns;
   }
-  return true;
+  return until;
 }
 
 }  // namespace liloc

@@ -29,12 +29,6 @@ struct FrameSink {
   std::function<void()> on_frame = {};
 };
 
-/// What a LiDAR sends now.
-struct LidarActivity {
-  std::optional<double> age_s;  ///< since its newest good frame came; empty before the first
-  double valid_share = 0;       ///< of that frame's pixels: those with a return
-};
-
 class Ingest {
  public:
   /// Before the dispatcher starts; the dispatcher must be stopped before the ingest goes. The site is the
@@ -48,13 +42,14 @@ class Ingest {
 
   /// In the order of the site. Any thread.
   [[nodiscard]] std::vector<wire::LidarHealth> health() const;
-  /// In the order of the site. Any thread.
-  [[nodiscard]] std::vector<LidarActivity> activity() const;
+  /// Since each LiDAR's newest good frame came, in the order of the site; empty before its first. Any thread.
+  [[nodiscard]] std::vector<std::optional<double>> ages_s() const;
   /// What the ceiling's clock shows (`SiteClocks`), by the newest stamps and the time since they came; 0 where
   /// no LiDAR is heard. Any thread.
   [[nodiscard]] StampNs ceiling_now(std::chrono::steady_clock::time_point at) const;
-  /// Whether every LiDAR that is heard has shown the room as of `stamp_ns` or later. Any thread.
-  [[nodiscard]] bool seen(StampNs stamp_ns) const;
+  /// Up to which stamp every LiDAR that is heard has shown the room; empty where none is: nobody waits for
+  /// one that is out. Any thread.
+  [[nodiscard]] std::optional<StampNs> seen_until() const;
 
  private:
   struct Lidar;

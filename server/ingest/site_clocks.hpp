@@ -10,7 +10,7 @@
 namespace liloc {
 
 /// How far a LiDAR's clock is from the site's, and what is done about it.
-struct ClockOffset {
+struct LidarClock {
   StampNs ahead_ns = 0;
   bool corrected = false;  ///< its stamps are set right by `ahead_ns`
   bool left_out = false;   ///< off, and not (yet) known well enough to be corrected
@@ -29,12 +29,12 @@ class SiteClocks {
   [[nodiscard]] std::optional<StampNs> add(std::size_t lidar, StampNs stamp_ns, Time arrived, StampNs wall_ns);
   /// The site's clock; empty where no LiDAR is heard.
   [[nodiscard]] std::optional<StampNs> now(Time at) const;
-  [[nodiscard]] ClockOffset offset(std::size_t lidar) const { return lidars_[lidar].offset; }
+  [[nodiscard]] LidarClock offset(std::size_t lidar) const { return lidars_[lidar].offset; }
 
  private:
   struct Lidar {
     StampClock clock;
-    ClockOffset offset;
+    LidarClock offset;
     std::optional<Time> steady_since;  ///< since when it has not jumped
     StampNs steady_ns = 0;             ///< mean of late: clocks drift
   };

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/registration/refine/pose_covariance.hpp"
-#include "common/registration/spot/settle.hpp"
+#include "common/registration/spot/polish.hpp"
 #include "server/localization/advice.hpp"
 
 namespace liloc {
@@ -35,10 +35,10 @@ PoseEstimate estimate_of(const Spot& spot, const Hypothesis& hypothesis) {
 /// that hardly hold a pose let it slide.
 bool idly_elsewhere(const Spot& spot, const Hypothesis& here, const PoseEstimate& seen,
                     const PoseEstimate& predicted) {
-  if (surprise_of(predicted, seen) <= kMostSurprise) return false;
+  if (squared_mahalanobis(predicted, seen) <= kChiSquareLimit) return false;
   const Judgement stayed = judge(spot.problem().target, spot.query(), spot.query().medium,
                                  predicted.T_map_sensor, spot.problem().judging.fine_tolerance_m);
-  return here.judgement.score < stayed.score + SettleOptions{}.as_good;
+  return here.judgement.score < stayed.score + PolishOptions{}.as_good;
 }
 
 /// How much of a view is new after a motion, 0..1.
@@ -181,7 +181,7 @@ Hypothesis DeviceSession::follow(const SpotRequest& request, const Spot& spot) {
     return same_place(h.T_map_sensor(), predicted, verify_.tracks.gate);
   };
   Hypothesis here = refine_and_judge(spot.problem(), predicted, &prior);
-  if (!stays(here) || !fits(here, verify_.tracks)) here = settle(spot.problem(), predicted, std::move(here));
+  if (!stays(here) || !fits(here, verify_.tracks)) here = polish(spot.problem(), predicted, std::move(here));
   const bool stayed = stays(here), fitting = stayed && fits(here, verify_.tracks);
   note_look(terms_of(here.judgement, fitting), stayed, novelty, &followed);
   if (fitting) {

@@ -3,8 +3,9 @@
 #include <Eigen/Dense>
 
 namespace liloc {
-PoseEstimate fused(PoseEstimate predicted, const PoseEstimate& seen, double surprise_limit) {
-  for (int i = 0; i < 20 && surprise_of(predicted, seen) > surprise_limit; ++i) predicted.covariance *= 2;
+PoseEstimate fused(PoseEstimate predicted, const PoseEstimate& seen, double chi_square_limit) {
+  for (int i = 0; i < 20 && squared_mahalanobis(predicted, seen) > chi_square_limit; ++i)
+    predicted.covariance *= 2;
   const Vector6d innovation = offset_of(predicted.T_map_sensor, seen.T_map_sensor);
   const Matrix6d gain = predicted.covariance * (predicted.covariance + seen.covariance).inverse();
   const Vector6d step = gain * innovation;

@@ -4,9 +4,9 @@
 
 namespace liloc {
 
-/// Both weighed by their covariances. Where they contradict each other beyond `surprise_limit`, the prediction
-/// was surer of itself than it should have been: it is widened until it no longer does.
+/// Both weighed by their covariances. Where they contradict each other beyond `chi_square_limit`, the
+/// prediction was surer of itself than it should have been: it is widened until it no longer does.
 [[nodiscard]] PoseEstimate fused(PoseEstimate predicted, const PoseEstimate& seen,
-                                 double surprise_limit = kMostSurprise);
+                                 double chi_square_limit = kChiSquareLimit);
 
 }  // namespace liloc

@@ -130,7 +130,7 @@ RoomSearch search(const Spot& spot, const LocalizerOptions& options) {
       return {{}, true};
     }
     found = merged(std::move(found), judge_candidates(problem, candidates));
-    if (up.borne_out && !found.empty()) return {found};  // every place was looked at; features never won there
+    if (up.supported && !found.empty()) return {found};  // every place was looked at; features never won there
   }
   if (convincing(found)) return {found};
   const FeatureProposer features(feature_search_of(problem, options.voxel_size_m));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/registration/spot/settle.hpp"
+#include "common/registration/spot/polish.hpp"
 
 namespace liloc {
 
@@ -45,7 +45,7 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
   if (!here) {
     here = refine_and_judge(spot.problem(), predicted);
     if (!same_place(here->T_map_sensor(), predicted, options_.gate) || !liloc::fits(*here, options_))
-      here = settle(spot.problem(), predicted, std::move(*here));
+      here = polish(spot.problem(), predicted, std::move(*here));
   }
   const bool stayed = same_place(here->T_map_sensor(), predicted, options_.gate);
   if (stayed)

@@ -36,7 +36,7 @@ struct TrackOptions {
   double fits_bound = 0.5;  ///< least share of agreeing points with a surface along their normal
 };
 
-/// Whether free space and surfaces bear a pose out: points that lie where a surface was seen must also lie
+/// Whether free space and surfaces support a pose: points that lie where a surface was seen must also lie
 /// along it.
 [[nodiscard]] bool fits(const Hypothesis& hypothesis, const TrackOptions& options);
 /// Share of the agreeing device points that found a surface with their own normal.

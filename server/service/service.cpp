@@ -21,7 +21,7 @@ class Comings {
 }  // namespace
 
 Service::Service(const ServiceOptions& options, ServiceBackend backend)
-    : desk_(options, std::move(backend), [this](const wire::Sender& to, SpotReply reply) {
+    : scheduler_(options, std::move(backend), [this](const wire::Sender& to, SpotReply reply) {
         if (auto sent = link_->reply(to, std::move(reply)); !sent) log::debug("{}", sent.error().message);
       }) {}
 
@@ -30,21 +30,21 @@ Result<std::unique_ptr<Service>> Service::create(wire::Dispatcher& dispatcher, c
   const auto valid = options.validated();
   if (!valid) return tl::unexpected(valid.error());
   std::unique_ptr<Service> service(new Service(*valid, std::move(backend)));
-  Desk* desk = &service->desk_;
+  RequestScheduler* scheduler = &service->scheduler_;
   const auto here = std::make_shared<Comings>(), left = std::make_shared<Comings>();
   auto link = wire::ServerLink::create(
       dispatcher, {.server_id = valid->server_id, .max_clients = valid->max_clients},
-      {.on_request = [desk](wire::Arrival arrival) { desk->submit(std::move(arrival)); },
+      {.on_request = [scheduler](wire::Arrival arrival) { scheduler->submit(std::move(arrival)); },
        .on_join = [here](const std::string& id) { here->say(id, "is here"); },
        .on_leave =
-           [desk, left](const std::string& id) {
+           [scheduler, left](const std::string& id) {
              left->say(id, "has left");
-             desk->client_left(id);
+             scheduler->client_left(id);
            },
-       .on_gone = [desk](std::uint64_t publication) { desk->publication_gone(publication); }});
+       .on_gone = [scheduler](std::uint64_t publication) { scheduler->publication_gone(publication); }});
   if (!link) return tl::unexpected(link.error());
   service->link_ = std::move(*link);
-  dispatcher.every(std::chrono::milliseconds(10), [desk] { desk->release(); });
+  dispatcher.every(std::chrono::milliseconds(10), [scheduler] { scheduler->release(); });
   return service;
 }
 

@@ -1,15 +1,15 @@
 #pragma once
 // Clients' requests over DDS, answered.
 //
-//   auto service = Service::create(dispatcher, {.workers = 2}, {.locate = ..., .forget = ..., .ready = ...});
-//   dispatcher.start();
+//   auto service = Service::create(dispatcher, {.workers = 2}, {.locate = ..., .forget = ..., .seen_until =
+//   ...}); dispatcher.start();
 //   ...
 //   service->stop();     // refuses new requests, finishes what waits
 //   dispatcher.stop();
 #include <memory>
 
 #include "common/wire/server_link.hpp"
-#include "server/service/desk.hpp"
+#include "server/service/request_scheduler.hpp"
 
 namespace liloc {
 
@@ -24,19 +24,19 @@ class Service {
   Service& operator=(const Service&) = delete;
 
   /// A ceiling frame came: held requests may be ready. Any thread.
-  void poke() { desk_.release(); }
-  void stop() { desk_.stop(); }
+  void poke() { scheduler_.release(); }
+  void stop() { scheduler_.stop(); }
 
-  [[nodiscard]] ServiceCounters counters() const { return desk_.counters(); }
+  [[nodiscard]] ServiceCounters counters() const { return scheduler_.counters(); }
   /// Nobody waits for a worker. Any thread.
-  [[nodiscard]] bool idle() const { return desk_.idle(); }
+  [[nodiscard]] bool idle() const { return scheduler_.idle(); }
   [[nodiscard]] std::size_t clients() const { return link_->clients(); }
 
  private:
   Service(const ServiceOptions& options, ServiceBackend backend);
 
   std::unique_ptr<wire::ServerLink> link_;
-  Desk desk_;  // after the link, which its workers use: it stops first
+  RequestScheduler scheduler_;  // after the link, which its workers use: it stops first
 };
 
 }  // namespace liloc

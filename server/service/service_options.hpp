@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "common/protocol/spot.hpp"
@@ -33,7 +34,9 @@ struct ServiceBackend {
   /// For metrics, from any of the service's threads: quick, and safe to call side by side. May be empty.
   std::function<void(Stage, double seconds)> on_stage = {};
   std::function<void(const SpotReply&)> on_answer = {};  ///< the same, before each reply leaves
-  std::function<bool(StampNs stamp_ns)> ready = {};  ///< is the ceiling seen as of this stamp? empty: always
+  /// Up to which stamp requests need not wait for the ceiling; empty where nothing is waited for. Any thread,
+  /// under no lock. Empty: never waited for.
+  std::function<std::optional<StampNs>()> seen_until = {};
 };
 
 }  // namespace liloc

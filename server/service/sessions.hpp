@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "server/service/waiting_line.hpp"
+#include "server/service/request_queue.hpp"
 
 namespace liloc {
 

@@ -66,7 +66,7 @@ CalibratedLidar result_of(std::size_t i, const std::vector<LidarScan>& scans,
 
 /// Refines, and judges whom to trust. A LiDAR whose place is in doubt must not lead others astray: they are
 /// refined without it, until no further one is doubted. `results` holds those that are left out already.
-void settle_trust(const std::vector<LidarScan>& scans, const Reference* reference, JointOptions joint,
+void decide_trust(const std::vector<LidarScan>& scans, const Reference* reference, JointOptions joint,
                   std::vector<JointLidar>* lidars, std::vector<CalibratedLidar>* results) {
   const auto fewest = reference == nullptr ? 2 : 1;
   bool doubted = true;
@@ -121,7 +121,7 @@ Result<std::vector<CalibratedLidar>> calibrate(const std::vector<LidarScan>& sca
   joint.start_distance_m = kGuessDistance_m;
   joint.iterations = kGuessIterations;
   joint.voxel_size_m = kVoxel_m;
-  settle_trust(scans, reference, joint, &lidars, &results);
+  decide_trust(scans, reference, joint, &lidars, &results);
   for (std::size_t i = 0; i < scans.size(); ++i)
     if (options.search[i] && places[i] && places[i]->twin && results[i].trusted())
       results[i].doubt = "another place fits almost as well; give a rough one with --near";

@@ -5,14 +5,13 @@
 #include <vector>
 
 #include "common/wire/status.hpp"
-#include "server/service/desk.hpp"
+#include "server/service/request_scheduler.hpp"
 
 namespace liloc::web {
 
 struct LidarFacts {
   wire::LidarHealth health;
   std::optional<double> age_s;  ///< since its newest good frame came; empty before the first
-  double valid_share = 0;       ///< of that frame's pixels, with a return
 };
 
 struct ServerFacts {

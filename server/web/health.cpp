@@ -8,10 +8,6 @@ namespace {
 constexpr double kHung_s = 5;  // five beats missed
 constexpr int kOk = 200, kUnavailable = 503;
 
-bool is_heard(const LidarFacts& lidar) {
-  return lidar.health.state == wire::LidarState::ok || lidar.health.state == wire::LidarState::slow;
-}
-
 }  // namespace
 
 Page live_page(const ServerFacts& facts) {
@@ -21,7 +17,8 @@ Page live_page(const ServerFacts& facts) {
 
 Page ready_page(const ServerFacts& facts) {
   if (Page live = live_page(facts); live.status != kOk) return live;
-  const auto heard = std::ranges::count_if(facts.lidars, is_heard);
+  const auto heard = std::ranges::count_if(
+      facts.lidars, [](const LidarFacts& lidar) { return wire::is_heard(lidar.health.state); });
   if (heard == 0)
     return {kUnavailable, fmt::format("none of {} ceiling LiDARs is heard\n", facts.lidars.size())};
   return {kOk, fmt::format("{} of {} ceiling LiDARs are heard\n", heard, facts.lidars.size())};

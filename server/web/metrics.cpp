@@ -87,17 +87,17 @@ void append_lidars(const ServerFacts& facts, std::vector<MetricFamily>& out) {
   auto up = family(MetricType::Gauge, "liloc_lidar_up", "1 where the LiDAR is heard, at its rate or slowly");
   auto rate = family(MetricType::Gauge, "liloc_lidar_rate_hz", "Frames a second");
   auto age = family(MetricType::Gauge, "liloc_lidar_age_seconds", "Since the newest good frame came");
-  auto valid =
-      family(MetricType::Gauge, "liloc_lidar_valid_share", "Of the newest frame's pixels, with a return");
+  auto valid = family(MetricType::Gauge, "liloc_lidar_valid_share",
+                      "Of the pixels of the frames of two seconds, with a return, median");
   auto frames = family(MetricType::Counter, "liloc_lidar_frames_total", "Frames that were taken");
   auto dropped = family(MetricType::Counter, "liloc_lidar_dropped_total", "Frames that could not be used");
   for (const LidarFacts& lidar : facts.lidars) {
     const std::vector<ClientMetric::Label> label{{"lidar", lidar.health.id}};
     const auto state = lidar.health.state;
-    add(up, state == wire::LidarState::ok || state == wire::LidarState::slow ? 1 : 0, label);
+    add(up, wire::is_heard(state) ? 1 : 0, label);
     add(rate, lidar.health.measured_hz, label);
     if (lidar.age_s) add(age, *lidar.age_s, label);
-    if (lidar.age_s) add(valid, lidar.valid_share, label);
+    if (lidar.age_s) add(valid, lidar.health.returns, label);
     add(frames, static_cast<double>(lidar.health.frames), label);
     add(dropped, static_cast<double>(lidar.health.malformed), label);
   }

@@ -35,7 +35,7 @@ struct Feed {
       const auto frame = made.add_depth(image);
       EXPECT_TRUE(frame);
       if (!frame) continue;
-      guesses += frame->method == "guess";
+      guesses += frame->source == PoseSource::guess;
       if (std::string now = made.problem(); !now.empty()) problem = now;
       segments = static_cast<int>(frame->odom_segment) + 1;
       if (!first) first = frame->T_odom_sensor;

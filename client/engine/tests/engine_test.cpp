@@ -88,13 +88,13 @@ INSTANTIATE_TEST_SUITE_P(Methods, Drift,
 
 TEST(Engine, NamesHowEachPoseWasFound) {
   Walker cloud(engine_options()), inertial(with_imu(LocalMethod::inertial));
-  EXPECT_EQ(cloud.step().method, "first");
-  EXPECT_EQ(cloud.step().method, "standing");
+  EXPECT_EQ(cloud.step().source, PoseSource::first);
+  EXPECT_EQ(cloud.step().source, PoseSource::standing);
   while (cloud.frame < 20) cloud.step();
-  EXPECT_EQ(cloud.step().method, "icp");
-  EXPECT_EQ(inertial.step().method, "first");
-  EXPECT_EQ(inertial.step().method, "inertial");
-  EXPECT_EQ(cloud.step(true).method, "guess");
+  EXPECT_EQ(cloud.step().source, PoseSource::icp);
+  EXPECT_EQ(inertial.step().source, PoseSource::first);
+  EXPECT_EQ(inertial.step().source, PoseSource::inertial);
+  EXPECT_EQ(cloud.step(true).source, PoseSource::guess);
 }
 
 TEST(Engine, TellsWhichAxesTheFrameShowed) {
@@ -150,19 +150,19 @@ TEST(Engine, ABlockedCameraIsBridgedAndAskedAboutAfterwards) {
   EXPECT_TRUE(walker.engine.take_request());
 }
 
-TEST(Engine, TheJumpBackFromAGuessIsMarked) {
+TEST(Engine, TheDiscontinuityAfterAGuessIsMarked) {
   Walker walker(engine_options());  // without an IMU the guess stays behind
   Pose last = walker.step().T_odom_sensor;
-  int jumps = 0;
+  int discontinuities = 0;
   for (int i = 1; i < 60; ++i) {
     const FrameResult now = walker.step(i > 30 && i <= 36);
     const Pose T_true = walk(time_of(i - 1)).inverse() * walk(time_of(i));
     const double step_error_m = distance_m(last * T_true, now.T_odom_sensor);
     EXPECT_TRUE(!now.converged || step_error_m < 0.03) << "frame " << i << ": " << step_error_m;
-    jumps += !now.converged && now.method == "icp" ? 1 : 0;
+    discontinuities += !now.converged && now.source == PoseSource::icp ? 1 : 0;
     last = now.T_odom_sensor;
   }
-  EXPECT_EQ(jumps, 1);
+  EXPECT_EQ(discontinuities, 1);
 }
 
 TEST(Engine, AfterABlackoutItIsNotFoundWhereNobodyCarriesItInThatTime) {
@@ -178,7 +178,7 @@ TEST(Engine, AfterABlackoutItIsNotFoundWhereNobodyCarriesItInThatTime) {
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(engine.add_depth(covered_at(frame++)));
   for (int i = 0; i < 5; ++i) {  // the view of the start, 3 m away, a third of a second later
     const FrameResult now = see(1.2, frame++);
-    EXPECT_LT(distance_m(last, now.T_odom_sensor), 1.5) << now.method;
+    EXPECT_LT(distance_m(last, now.T_odom_sensor), 1.5) << name_of(now.source);
   }
 }
 
@@ -191,13 +191,13 @@ TEST(Engine, ALongBlackoutStartsANewSegmentWhereTheOldOneEnded) {
   EXPECT_EQ(frame.odom_segment, 0U);
   frame = walker.step();
   EXPECT_EQ(frame.odom_segment, 1U);
-  EXPECT_LT(distance_m(before, frame.T_odom_sensor), 0.05);  // bridged, no jump
+  EXPECT_LT(distance_m(before, frame.T_odom_sensor), 0.05);  // bridged, continuous
   const auto request = walker.engine.take_request();
   ASSERT_TRUE(request);
   EXPECT_EQ(request->odom_segment, 1U);
   EXPECT_EQ(request->local_poses.size(), 1U);  // those of the old segment say nothing about it
   frame = walker.step();
-  EXPECT_EQ(frame.method, "icp");
+  EXPECT_EQ(frame.source, PoseSource::icp);
   EXPECT_EQ(frame.odom_segment, 1U);
 }
 
@@ -290,7 +290,7 @@ TEST(Engine, RefusesAWrongSizeAndAnOldStamp) {
   DepthImage torn = covered_at(6);
   torn.units.pop_back();
   EXPECT_FALSE(walker.engine.add_depth(torn));
-  EXPECT_EQ(walker.step().method, "standing");  // none of it did harm
+  EXPECT_EQ(walker.step().source, PoseSource::standing);  // none of it did harm
 }
 
 TEST(Engine, TwoRunsAreEqual) {

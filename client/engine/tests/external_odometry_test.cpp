@@ -37,7 +37,7 @@ TEST(ExternalOdometry, PosesAreInterpolatedAtTheFramesStamp) {
   wheels.drive(0, 5, 50);
   for (double t = 0.01; t < 4.9; t += 0.0667) {
     const OdometryStep step = wheels.odometry.step(at(t));
-    EXPECT_EQ(step.method, "external");
+    EXPECT_EQ(step.source, PoseSource::external);
     EXPECT_TRUE(step.converged && wheels.odometry.placed());
     EXPECT_LT(distance_m(step.T_odom_sensor, walk(t)), 1e-3) << t;
     EXPECT_LT(angle_between_rad(step.T_odom_sensor, walk(t)), 1e-3) << t;
@@ -49,7 +49,7 @@ TEST(ExternalOdometry, ALittleBeyondTheNewestIsGuessedAndMoreIsNot) {
   Wheels wheels;
   wheels.drive(0, 3, 50);
   const OdometryStep near = wheels.odometry.step(at(3.03));
-  EXPECT_EQ(near.method, "guess");
+  EXPECT_EQ(near.source, PoseSource::guess);
   EXPECT_FALSE(near.converged);
   EXPECT_TRUE(wheels.odometry.placed());
   EXPECT_GT(near.sd_m, 0.0);
@@ -95,7 +95,7 @@ TEST(ExternalOdometry, BadSamplesAreRefusedAndHarmless) {
   bad.translation().x() = NAN;
   EXPECT_FALSE(wheels.odometry.add({at(2), bad, std::nullopt}));
   EXPECT_FALSE(wheels.odometry.add({at(0.5), walk(0.5), std::nullopt}));
-  EXPECT_EQ(wheels.odometry.step(at(0.9)).method, "external");
+  EXPECT_EQ(wheels.odometry.step(at(0.9)).source, PoseSource::external);
 }
 
 TEST(ExternalOdometry, TheCovariancesGrowthIsTheMotionsError) {
@@ -118,7 +118,7 @@ TEST(ExternalOdometryEngine, RequestsCarryTheWheelsPoses) {
   for (int i = 0; i < 40; ++i) {
     const auto frame = engine.add_depth(frame_at(room, i));
     ASSERT_TRUE(frame);
-    EXPECT_EQ(frame->method, "external");
+    EXPECT_EQ(frame->source, PoseSource::external);
     EXPECT_LT(distance_m(frame->T_odom_sensor, walk(time_of(i))), 1e-3);
     const auto request = engine.take_request();
     if (!request) continue;

@@ -128,7 +128,7 @@ TEST_P(SlowMotion, IsFollowed) {
           engine.add_depth(view(m.walker ? with_walker(room, time_of(i) - 2) : room, pose_at(time_of(i)), i));
       ASSERT_TRUE(frame);
       if (i == 0) first = frame->T_odom_sensor;
-      standing += frame->method == "standing";
+      standing += frame->source == PoseSource::standing;
       const Pose error = (pose_at(time_of(0)).inverse() * pose_at(time_of(i))).inverse() *
                          (first.inverse() * frame->T_odom_sensor);
       if (!frame->converged) continue;  // marked

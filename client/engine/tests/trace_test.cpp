@@ -33,7 +33,7 @@ class Trace : public testing::Test {
   FrameResult frame(int second, std::optional<double> map_x, std::uint32_t segment = 0) {
     FrameResult f;
     f.stamp_ns = second * 1'000'000'000LL + 5;
-    f.method = "icp";
+    f.source = PoseSource::icp;
     f.latency_ms = 1.5;
     f.odom_segment = segment;
     f.T_odom_sensor = Pose(Eigen::Translation3d(second, 0, 0));

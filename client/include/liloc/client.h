@@ -122,10 +122,10 @@ typedef struct liloc_pose_update {
   int64_t stamp_ns; /* of the frame; 0 before the first */
   bool has_map;     /* an answer was verified: T_map_sensor holds */
   liloc_pose T_map_sensor;
-  liloc_pose T_odom_sensor; /* smooth; never jumps by a correction (REP-105) */
+  liloc_pose T_odom_sensor; /* smooth; corrections do not move it (REP-105) */
   uint32_t odom_segment;    /* rises when the odometry broke */
   bool informative;         /* the frame showed enough to be matched */
-  bool converged;           /* its pose was measured, and is no jump after guesses */
+  bool converged;           /* its pose was measured, and continues the one before */
   int32_t state;            /* liloc_state */
   bool server_connected;
   /* Share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1:
@@ -217,7 +217,7 @@ liloc_status liloc_client_push_imu(liloc_client* client, int64_t stamp_ns, const
  * it has points there. At most 4 million. */
 liloc_status liloc_client_push_points(liloc_client* client, const float* xyz, size_t count, int64_t stamp_ns);
 /* With LILOC_LOCAL_EXTERNAL: where the odometry has the base, in its own frame; often, and in order. A gap over
- * a second or a jump starts a new odom_segment. `covariance`: NULL, or 36 values of the pose, row-major, [rad;
+ * a second or a discontinuity starts a new odom_segment. `covariance`: NULL, or 36 values of the pose, row-major, [rad;
  * m]; its growth bounds the motion's error; NaN or a negative variance: unknown. */
 liloc_status liloc_client_push_odometry(liloc_client* client, int64_t stamp_ns, const liloc_pose* T_odom_base,
                                         const double* covariance);

@@ -110,10 +110,10 @@ enum class State { searching, tracking, coasting, lost };
 struct PoseUpdate {
   std::int64_t stamp_ns = 0;         ///< of the frame; 0 before the first
   std::optional<Pose> T_map_sensor;  ///< once an answer was verified
-  Pose T_odom_sensor;                ///< smooth; never jumps by a correction (REP-105)
+  Pose T_odom_sensor;                ///< smooth; corrections do not move it (REP-105)
   std::uint32_t odom_segment = 0;    ///< rises when the odometry broke
   bool informative = false;          ///< the frame showed enough to be matched
-  bool converged = false;            ///< its pose was measured, and is no jump after a stretch of guesses
+  bool converged = false;            ///< its pose was measured, and continues the one before it
   State state = State::searching;
   bool server_connected = false;
   /// Share of a motion along each axis of the sensor that the frame showed, [rotation; translation], 0..1:
@@ -197,9 +197,9 @@ class Client {
   /// as it has points there. Errors: a null pointer, over 4 million points, stopped.
   Outcome<Taken> push_points(const float* xyz, std::size_t count, std::int64_t stamp_ns);
   /// With Local::external: where the odometry has the base, in its own frame; often, and in order. A gap over a
-  /// second or a jump starts a new odom_segment. `covariance`: of the pose, row-major, [rad; m]; its growth
-  /// bounds the motion's error; one that is not finite, or has a negative variance, is taken for unknown.
-  /// Errors: another method, a pose that is not finite or no rotation, stopped.
+  /// second or a discontinuity starts a new odom_segment. `covariance`: of the pose, row-major, [rad; m]; its
+  /// growth bounds the motion's error; one that is not finite, or has a negative variance, is taken for
+  /// unknown. Errors: another method, a pose that is not finite or no rotation, stopped.
   Outcome<Taken> push_odometry(std::int64_t stamp_ns, const Pose& T_odom_base,
                                const std::optional<std::array<double, 36>>& covariance = {});
 

@@ -69,7 +69,7 @@ class Ride {
     Pose T = filter->state().T_odom_imu;
     T.linear() = so3_exp(step.head<3>()) * T.linear();
     T.translation() += step.tail<3>();
-    filter->settle(T, (prior.inverse() + noise.inverse()).inverse());
+    filter->update(T, (prior.inverse() + noise.inverse()).inverse());
   }
   [[nodiscard]] double time() const { return static_cast<double>(next_) / kRateHz; }
   /// Truth minus estimate.

@@ -26,7 +26,7 @@ class Sudden : public testing::Test {
   FrameFault judge(double half_m, double valid = 1.0, double mean_m = 3.0) {
     return judge_.judge(spread_image(mean_m, half_m, ++seed_, valid), scene::small_camera(), 0.25, 8.5).fault;
   }
-  void settle() {
+  void see_usual_frames() {
     for (int i = 0; i < 10; ++i) ASSERT_EQ(judge(1.0), FrameFault::none);
   }
   Informativeness judge_;
@@ -40,7 +40,7 @@ TEST_F(Sudden, TheSpreadIsTheStandardDeviation) {
 }
 
 TEST_F(Sudden, ASpikeAndADropAreSeenAndPass) {
-  settle();
+  see_usual_frames();
   EXPECT_EQ(judge(1.8), FrameFault::spike);
   EXPECT_EQ(judge(1.0), FrameFault::none);
   EXPECT_EQ(judge(0.4), FrameFault::drop);
@@ -48,13 +48,13 @@ TEST_F(Sudden, ASpikeAndADropAreSeenAndPass) {
 }
 
 TEST_F(Sudden, ASlowChangePasses) {
-  settle();
+  see_usual_frames();
   for (double half = 1.0; half < 2.5; half *= 1.06) EXPECT_EQ(judge(half), FrameFault::none) << half;
   for (double half = 2.4; half > 0.5; half *= 0.94) EXPECT_EQ(judge(half), FrameFault::none) << half;
 }
 
 TEST_F(Sudden, ANewLevelIsAcceptedAfterAWhile) {
-  settle();
+  see_usual_frames();
   int refused = 0;
   while (judge(2.0) != FrameFault::none) ++refused;
   EXPECT_GE(refused, 2);
@@ -63,7 +63,7 @@ TEST_F(Sudden, ANewLevelIsAcceptedAfterAWhile) {
 }
 
 TEST_F(Sudden, ACoveredCameraIsSeenAtOnceAndForAsLongAsItLasts) {
-  settle();
+  see_usual_frames();
   for (int i = 0; i < 30; ++i) EXPECT_EQ(judge(0.1, 0.9, 0.4), FrameFault::covered);
   EXPECT_EQ(judge(1.5), FrameFault::none);  // what comes after is a new scene, not a spike
 }

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kSureM = 0.02, kVagueM = 0.5;
+constexpr double kSureM = 0.02, kWidePriorM = 0.5;
 
 /// A map of one view of room 1, and the same view after somebody who stood in it perhaps has left.
 struct Scene {
@@ -25,7 +25,7 @@ struct Scene {
     const auto cloud = depth_to_cloud(scene::render(room, walk(0), options.camera, 1, 0.004), options.camera);
     map.insert(Pose::Identity(), extract_surfels(*cloud, Eigen::Vector3f::Zero()), 1);
     match.overlap = match.paired = 0.9;
-    match.settled = true;
+    match.stop = ScanStop::converged;
   }
   [[nodiscard]] bool doubtful(double guess_sd_m) const {
     const MotionGuess guess(Pose::Identity(), guess_sd_m, guess_sd_m);
@@ -34,7 +34,7 @@ struct Scene {
   [[nodiscard]] double merit(const Pose& T_map_sensor) const {
     ScanMatch there = match;
     there.T_map_sensor = T_map_sensor;
-    const MotionGuess guess(Pose::Identity(), 0.1, kVagueM);
+    const MotionGuess guess(Pose::Identity(), 0.1, kWidePriorM);
     return MatchCheck(map, image, guess, options).merit(there);
   }
 
@@ -44,25 +44,25 @@ struct Scene {
   ScanMatch match;
 };
 
-TEST(MatchCheck, WhatSettlesIsNotDoubtfulNorWhatDoesNotWhereNobodyMoves) {
+TEST(MatchCheck, WhatConvergesIsNotDoubtfulNorWhatDoesNotWhereNobodyMoves) {
   Scene still(false), people(true);
   EXPECT_FALSE(still.doubtful(kSureM));
   EXPECT_FALSE(people.doubtful(kSureM));
-  still.match.settled = people.match.settled = false;
+  still.match.stop = people.match.stop = ScanStop::iteration_limit;
   EXPECT_FALSE(still.doubtful(kSureM));
   EXPECT_TRUE(people.doubtful(kSureM));
 }
 
-TEST(MatchCheck, FromAVagueGuessAllMustSpeakForTheMatch) {
+TEST(MatchCheck, FromAWidePriorAllMustSpeakForTheMatch) {
   Scene still(false);
-  EXPECT_FALSE(still.doubtful(kVagueM));
-  EXPECT_TRUE(Scene(true).doubtful(kVagueM));
+  EXPECT_FALSE(still.doubtful(kWidePriorM));
+  EXPECT_TRUE(Scene(true).doubtful(kWidePriorM));
   still.match.unobserved = 1;
-  EXPECT_TRUE(still.doubtful(kVagueM));
+  EXPECT_TRUE(still.doubtful(kWidePriorM));
   EXPECT_FALSE(still.doubtful(kSureM));  // a good guess knows that axis
   still.match.unobserved = 0;
   still.match.overlap = 0.4;
-  EXPECT_TRUE(still.doubtful(kVagueM));
+  EXPECT_TRUE(still.doubtful(kWidePriorM));
 }
 
 TEST(MatchCheck, OfMatchesWithOneOverlapTheNearerThatSeesNothingThroughIsTheBetter) {

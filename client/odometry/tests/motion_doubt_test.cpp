@@ -39,7 +39,7 @@ TEST(MotionDoubt, APoseThatIsSeenTellsTheMeanRateOfTheStep) {
     doubt.predict(kDt, kAccel, kTurn);
     Vector6d shift;
     shift << 0.01, -0.02, 0.03, 0.004, 0.005, -0.006;
-    const Vector6d rate = doubt.settle(seen_along({0, 1, 2, 3, 4, 5}), shift);
+    const Vector6d rate = doubt.update(seen_along({0, 1, 2, 3, 4, 5}), shift);
     EXPECT_LT((rate - shift / kDt).norm(), 1e-3 * rate.norm());
   }
 }
@@ -51,7 +51,7 @@ TEST(MotionDoubt, WhatTheSceneDoesNotShowTeachesNothingAndStaysInDoubt) {
     doubt.predict(kDt, kAccel, kTurn);
     Vector6d shift = Vector6d::Constant(0.01);
     shift[3] = 0;  // the match followed the guess there
-    const Vector6d rate = doubt.settle(seen_along({0, 1, 2, 4, 5}), shift);
+    const Vector6d rate = doubt.update(seen_along({0, 1, 2, 4, 5}), shift);
     EXPECT_LT(std::abs(rate[3]), 1e-9);
     EXPECT_NEAR(rate[4], 0.01 / kDt, 1e-3);
     EXPECT_GT(doubt.pose()(3, 3), last);
@@ -60,7 +60,7 @@ TEST(MotionDoubt, WhatTheSceneDoesNotShowTeachesNothingAndStaysInDoubt) {
   }
   doubt.predict(kDt, kAccel, kTurn);
   EXPECT_LE(std::sqrt(doubt.pose()(3, 3)), std::sqrt(last) + 1.2 * kDt);  // 1 m/s at most
-  EXPECT_LT(std::abs(doubt.settle(seen_along({3}), Vector6d::Constant(0.3))[3]), 0.3 / kDt / 2);
+  EXPECT_LT(std::abs(doubt.update(seen_along({3}), Vector6d::Constant(0.3))[3]), 0.3 / kDt / 2);
   EXPECT_LT(doubt.pose()(3, 3), 1e-7);  // a corner comes into view
 }
 

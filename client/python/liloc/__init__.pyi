@@ -48,7 +48,7 @@ class PoseUpdate:
         """4x4; None until an answer was verified."""
     @property
     def T_odom_sensor(self) -> npt.NDArray[np.float64]:
-        """4x4; smooth, never jumps by a correction."""
+        """4x4; smooth; corrections do not move it."""
     @property
     def odom_segment(self) -> int:
         """Rises when the odometry broke."""
@@ -210,7 +210,7 @@ class Client:
         self, stamp_ns: int, T_odom_base: npt.ArrayLike, covariance: Optional[npt.ArrayLike] = None
     ) -> None:
         """With local="external": where the odometry has the base, 4x4, in its own frame; often, and in order. A gap
-        over a second or a jump starts a new odom_segment. covariance: 6x6 of the pose, [rad; m];
+        over a second or a discontinuity starts a new odom_segment. covariance: 6x6 of the pose, [rad; m];
         NaN or a negative variance: unknown."""
     def newest(self) -> PoseUpdate:
         """Of the newest processed frame."""

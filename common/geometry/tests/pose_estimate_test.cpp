@@ -48,7 +48,7 @@ TEST_P(PoseEstimateLaw, ACarriedCovarianceIsThatOfTheErrors) {
     const PoseEstimate estimate = carried({disturbed(truth, drawn(rng, before)), before}, T_step, kSdRad, kSdM);
     const Pose seen = disturbed(truth * T_step, drawn(rng, diagonal(kSdRad, kSdM)));
     const Vector6d error = offset_of(estimate.T_map_sensor, seen);
-    sum += error.dot(estimate.covariance.ldlt().solve(error));
+    sum += squared_mahalanobis(error, estimate.covariance);
   }
   EXPECT_NEAR(sum / kDraws, 6, 0.7);  // its deviation is 0.15
 }
@@ -60,7 +60,7 @@ TEST_P(PoseEstimateLaw, TheDistanceIsSixOnAverage) {
   double sum = 0;
   constexpr int kDraws = 500;
   for (int i = 0; i < kDraws; ++i)
-    sum += surprise_of({disturbed(truth, drawn(rng, a)), a}, {disturbed(truth, drawn(rng, b)), b});
+    sum += squared_mahalanobis({disturbed(truth, drawn(rng, a)), a}, {disturbed(truth, drawn(rng, b)), b});
   EXPECT_NEAR(sum / kDraws, 6, 0.7);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, PoseEstimateLaw, testing::Range(1U, 9U));

@@ -32,14 +32,14 @@ int Climber::score(const Eigen::Vector4d& pose, std::size_t points, int least) {
     sum += worth;
     most += worth > 0 ? worth : 0;
   }
-  if (movers_ == nullptr || most <= least) return sum;
+  if (dynamic_mask_ == nullptr || most <= least) return sum;
   std::size_t count = 0;
   for (std::size_t i = 0; i < worths.size(); ++i) {
     against_[count] = static_cast<std::uint32_t>(i);
     count += worths[i] < 0 ? 1 : 0;
   }
   for (const std::uint32_t i : std::span(against_.data(), count))
-    if (movers_->at(Eigen::Vector3f(probes.x[i], probes.y[i], probes.z[i]) + t)) sum -= worths[i];
+    if (dynamic_mask_->at(Eigen::Vector3f(probes.x[i], probes.y[i], probes.z[i]) + t)) sum -= worths[i];
   return sum;
 }
 

@@ -14,13 +14,15 @@ struct LevelPose {
 };
 
 /// Climbs level poses on a field, axis by axis. It remembers the points as turned by each yaw that it has
-/// tried, which is nothing but time saved; one thread. The field and the movers (null: none) outlive it.
+/// tried, which is nothing but time saved; one thread. The field and the mask of where somebody moves (null:
+/// nowhere) outlive it.
 class Climber {
  public:
   /// Points about the device and their normals, turned into the map's axes at yaw 0.
-  Climber(const ScoreField& field, const Vicinity* movers, const Eigen::Vector3d& up_map, const Cloud& level)
+  Climber(const ScoreField& field, const VoxelMask* dynamic_mask, const Eigen::Vector3d& up_map,
+          const Cloud& level)
       : field_(field),
-        movers_(movers),
+        dynamic_mask_(dynamic_mask),
         up_map_(up_map),
         level_(level),
         worths_(level.size()),
@@ -40,7 +42,7 @@ class Climber {
   bool improve(double shift_m, double turn_rad, std::size_t points, LevelPose* best);
 
   const ScoreField& field_;
-  const Vicinity* const movers_;
+  const VoxelMask* const dynamic_mask_;
   const Eigen::Vector3d up_map_;
   const Cloud& level_;
   std::unordered_map<long, ScoreField::Probes> turned_;  ///< by yaw in microradians

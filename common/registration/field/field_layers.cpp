@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/registration/points/vicinity.hpp"
+#include "common/registration/points/voxel_mask.hpp"
 
 namespace liloc {
 namespace {
@@ -115,7 +115,7 @@ FieldLayers::FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& v
   Stamp stamp(options.surface_sd_m);
   for (const Eigen::Vector3f& p : earlier.change.gone) forget(p, &stamp);
   for (const std::uint32_t i : earlier.change.fresh) add(cloud_map, i, &stamp);
-  const Vicinity touched = Vicinity::covering(earlier.change.gone, 2 * static_cast<double>(stamp.reach_m));
+  const VoxelMask touched = VoxelMask::covering(earlier.change.gone, 2 * static_cast<double>(stamp.reach_m));
   for (std::size_t i = 0; i < cloud_map.size(); ++i)  // once more where something else was taken away
     if (touched.at(cloud_map.points[i])) add(cloud_map, i, &stamp);
   const bool same_sensors =

@@ -64,9 +64,9 @@ LILOC_WIDEST bool sum_rows(const std::int8_t* cells, const std::ptrdiff_t* rows,
 
 }  // namespace
 
-RowSums::RowSums(const ScoreField& field, const RowCrests& crests)
+RowSums::RowSums(const ScoreField& field, const BlockMaxima& maxima)
     : field_(field),
-      crests_(crests),
+      maxima_(maxima),
       width_((field.size().x() + 31) / 32 * 32),
       height_(field.size().y()),
       height_padded_((height_ + kBlock - 1) / kBlock * kBlock),
@@ -91,8 +91,8 @@ void RowSums::select(int z) {
     if (z + o.z < 0 || z + o.z >= field_.size().z()) continue;
     rows_.push_back(field_.row(0, z + o.z, o.plane) - cells + o.y * stride + o.x);
     rows_y_.push_back(o.y);
-    if (std::abs(o.y) <= RowCrests::kPad)
-      columns_.push_back(crests_.column(o.x, z + o.z, o.plane) + o.y);
+    if (std::abs(o.y) <= BlockMaxima::kPad)
+      columns_.push_back(maxima_.column(o.x, z + o.z, o.plane) + o.y);
     else
       beyond_ += ScoreField::kSurface;
   }
@@ -102,7 +102,7 @@ void RowSums::select(int z) {
 void RowSums::bound() {
   for (int b = 0; b < width_ / kBlock; ++b)
     sum_columns(columns_.data(),
-                static_cast<std::ptrdiff_t>(b) * (kBlock / RowCrests::kStep) * crests_.stride(),
+                static_cast<std::ptrdiff_t>(b) * (kBlock / BlockMaxima::kStep) * maxima_.stride(),
                 columns_.size(), height_padded_, &bounds_[static_cast<std::size_t>(b * height_padded_)]);
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/registration/field/row_crests.hpp"
+#include "common/registration/field/block_maxima.hpp"
 #include "common/registration/field/score_field.hpp"
 
 namespace liloc {
@@ -20,8 +20,8 @@ class RowSums {
  public:
   static constexpr int kBlock = 16;  ///< places that are summed together; 32 and 64 prune less, DECISIONS.md
 
-  /// `crests` of the same field, for kBlock.
-  RowSums(const ScoreField& field, const RowCrests& crests);
+  /// `maxima` of the same field, for kBlock.
+  RowSums(const ScoreField& field, const BlockMaxima& maxima);
   /// The device points from now on. Those whose |x| exceeds the field's padding are left out.
   void take(std::vector<CellOffset> offsets);
   /// What exceeds `threshold` is exact, and its indices, rising, are `above`; the rest is no more than that.
@@ -36,12 +36,12 @@ class RowSums {
   void sum_row(int y, std::size_t first, std::size_t last, int threshold, std::vector<std::uint32_t>* above);
 
   const ScoreField& field_;
-  const RowCrests& crests_;
+  const BlockMaxima& maxima_;
   int width_, height_;
   std::vector<CellOffset> offsets_;   ///< by rising y: those inside the field at one y are neighbours
   std::vector<int> rows_y_;           ///< of the offsets inside at one z ...
   std::vector<std::ptrdiff_t> rows_;  ///< ... and where their rows start for y = 0, from the field's first cell
-  std::vector<const std::int8_t*> columns_;  ///< their crests for the first block, but for those too far in y
+  std::vector<const std::int8_t*> columns_;  ///< their maxima for the first block, but for those too far in y
   int height_padded_, beyond_ = 0;           ///< beyond_: what the latter may be worth
   std::vector<std::int16_t> bounds_;         ///< block by block, y fastest
   std::vector<std::int16_t> sums_;

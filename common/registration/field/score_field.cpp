@@ -129,8 +129,8 @@ void ScoreField::look_up(const Probes& probes, const Eigen::Vector3f& shift,
   for (std::int32_t& worth : worths) worth = cells_[static_cast<std::size_t>(worth)];
 }
 
-void ScoreField::forget_free_space(const Vicinity& movers) {
-  movers.for_each_place([&](const Eigen::Vector3f& p_map) {
+void ScoreField::forget_free_space(const VoxelMask& dynamic_mask) {
+  dynamic_mask.for_each_place([&](const Eigen::Vector3f& p_map) {
     const Eigen::Array3f q = ((p_map - origin_) * inverse_).array();
     if (!((q >= 0).all() && (q < extent_.array()).all())) return;
     const Eigen::Array3i cell = q.cast<int>();

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/registration/field/field_layers.hpp"
-#include "common/registration/points/vicinity.hpp"
+#include "common/registration/points/voxel_mask.hpp"
 
 namespace liloc {
 
@@ -44,7 +44,7 @@ class ScoreField {
   void look_up(const Probes& probes, const Eigen::Vector3f& shift, std::span<std::int32_t> worths) const;
 
   /// Makes free space unknown where somebody moves: the field is of the still room and calls it empty.
-  void forget_free_space(const Vicinity& movers);
+  void forget_free_space(const VoxelMask& dynamic_mask);
 
   [[nodiscard]] bool empty() const { return cells_.empty(); }
   [[nodiscard]] double cell_m() const { return cell_; }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/registration/points/simd.hpp"
-#include "common/registration/points/vicinity.hpp"
+#include "common/registration/points/voxel_mask.hpp"
 
 namespace liloc {
 namespace {
@@ -60,7 +60,7 @@ NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell
     return;
   }
   take_over(before, change.now);
-  const Vicinity touched = Vicinity::covering(change.gone, 2 * static_cast<double>(reach_));
+  const VoxelMask touched = VoxelMask::covering(change.gone, 2 * static_cast<double>(reach_));
   for (std::size_t i = 0; i < points.size(); ++i)
     if (touched.at(points[i])) fill_left(points, i);
   for (Block& block : cells_)

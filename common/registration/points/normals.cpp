@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kSums = 10;   // count, mean and second moments of a neighbourhood
 constexpr int kNewtonSteps = 6;     // by hand
 constexpr float kNoPlane = 1e-10F;  // squared; below, rounding decides what is across
+constexpr double kWiden = 1.5;      // by hand, as the third of the points (target/DECISIONS.md)
 
 /// Of each point's neighbourhood: count, sums, and sums of products of the offsets from the point. Relative to
 /// it, single precision loses nothing. Ten rows of one value per point.
@@ -109,17 +110,31 @@ Moments moments_of(const Cloud& cloud, float radius_m) {
   return moments;
 }
 
+/// Of neighbourhoods as wide as it takes.
+Moments widened_moments(const Cloud& cloud, const NormalOptions& options, float fewest) {
+  double radius_m = options.radius_m;
+  Moments moments = moments_of(cloud, static_cast<float>(radius_m));
+  const auto holds_together = [&] {
+    const auto begin = moments.rows.begin(), end = begin + static_cast<std::ptrdiff_t>(cloud.size());
+    return 3 * std::count_if(begin, end, [&](float count) { return count >= fewest; }) >= end - begin;
+  };
+  while (options.widest_m > 0 && !holds_together() && (radius_m *= kWiden) < options.widest_m)
+    moments = moments_of(cloud, static_cast<float>(radius_m));
+  return moments;
+}
+
 }  // namespace
 
 Cloud with_normals(const Cloud& cloud, const Eigen::Vector3f& sensor_position, const NormalOptions& options) {
-  const Moments moments = moments_of(cloud, static_cast<float>(options.radius_m));
+  const auto fewest = static_cast<float>(std::max(1, options.min_neighbors));
+  const Moments moments = widened_moments(cloud, options, fewest);
   std::vector<float> x(cloud.size()), y(cloud.size()), z(cloud.size());
   thinnest_directions(moments.rows.data(), cloud.size(), x.data(), y.data(), z.data());
   Cloud result;
   result.points.reserve(cloud.size());
   result.normals.reserve(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (moments.rows[i] < static_cast<float>(std::max(1, options.min_neighbors))) continue;
+    if (moments.rows[i] < fewest) continue;
     Eigen::Vector3f normal(x[i], y[i], z[i]);
     if (normal.isZero()) normal = a_thinnest_direction(moments, i);
     const Eigen::Vector3f& p = cloud.points[i];

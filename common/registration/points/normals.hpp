@@ -7,6 +7,9 @@ namespace liloc {
 struct NormalOptions {
   double radius_m = 0.125;  ///< 2.5 voxels of 0.05 m: about 20 neighbours on a surface
   int min_neighbors = 5;    ///< fewer (the point itself counts) hang in the air: the point is dropped
+  /// A cloud of which fewer than a third of the points have so many is sparse: the radius grows by halves, up
+  /// to this. 0: it stays.
+  double widest_m = 0;
 };
 
 /// The points that have enough neighbours, each with the direction in which its neighbourhood is thinnest

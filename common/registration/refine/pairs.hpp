@@ -9,21 +9,22 @@ struct Side {
   const Cloud& target;
   const NearestGrid& nearest;
   const Cloud& source;
-  const Vicinity* movers = nullptr;  ///< beside whom nothing is paired: they are no part of the target
+  const VoxelMask* dynamic_mask = nullptr;  ///< where somebody moves nothing is paired
 
   /// The index of a source point's partner, or NearestGrid::kNone.
   [[nodiscard]] std::int32_t partner_of(const Eigen::Vector3f& p_target) const {
     const std::int32_t j = nearest.nearest(p_target);
-    return j != NearestGrid::kNone && movers != nullptr && movers->at(p_target) ? NearestGrid::kNone : j;
+    return j != NearestGrid::kNone && dynamic_mask != nullptr && dynamic_mask->at(p_target) ? NearestGrid::kNone
+                                                                                            : j;
   }
 };
 
 /// A target, thinned and whole, and a cloud of the query.
 [[nodiscard]] inline Side coarse_side(const Target& target, const Cloud& source) {
-  return {target->coarse, target->nearest_coarse, source, target.movers()};
+  return {target->coarse, target->nearest_coarse, source, target.dynamic_mask()};
 }
 [[nodiscard]] inline Side fine_side(const Target& target, const Cloud& source) {
-  return {target->cloud, target->nearest, source, target.movers()};
+  return {target->cloud, target->nearest, source, target.dynamic_mask()};
 }
 
 /// Calls visit(source index, arm, normal of the pair, offset, weight) for each pair; the normal is zero where a

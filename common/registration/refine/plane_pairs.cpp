@@ -102,7 +102,7 @@ void PlanePairs::find(const Eigen::Vector3f& t, float limit) {
     const auto j = static_cast<std::size_t>(partners_[i]);
     const Eigen::Vector3f p = Eigen::Vector3f(arms_.x[i], arms_.y[i], arms_.z[i]) + t;
     const Eigen::Vector3f offset = p - side_.target.points[j];
-    if (offset.squaredNorm() > limit || (side_.movers != nullptr && side_.movers->at(p))) continue;
+    if (offset.squaredNorm() > limit || (side_.dynamic_mask != nullptr && side_.dynamic_mask->at(p))) continue;
     offsets_.set(i, offset);
     target_normals_.set(i, side_.target.normals[j]);
   }

@@ -108,10 +108,10 @@ bool iterate(Pairs& pairs, int iterations, double from_m, double to_m, const Pos
 
 /// How many points of the source may pair: those that are not beside somebody.
 std::size_t unhindered(const Side& side, const Pose& T) {
-  if (side.movers == nullptr) return side.source.size();
+  if (side.dynamic_mask == nullptr) return side.source.size();
   const Eigen::Isometry3f Tf = T.cast<float>();
   return static_cast<std::size_t>(std::ranges::count_if(
-      side.source.points, [&](const Eigen::Vector3f& p) { return !side.movers->at(Tf * p); }));
+      side.source.points, [&](const Eigen::Vector3f& p) { return !side.dynamic_mask->at(Tf * p); }));
 }
 
 }  // namespace

@@ -67,13 +67,6 @@ LocalMap::LocalMap(const LocalMapOptions& options)
   rebuild(kFirstSlots);
 }
 
-void LocalMap::clear() {
-  cells_.clear();
-  cell_keys_.clear();
-  alive_ = 0;
-  rebuild(kFirstSlots);
-}
-
 std::uint32_t LocalMap::lookup(std::uint64_t key) const {
   std::size_t slot = (key * 0x9E3779B97F4A7C15ULL) >> shift_;
   while (keys_[slot] != kFree) {

@@ -61,7 +61,6 @@ class LocalMap {
   [[nodiscard]] Cloud standing(StampNs since_ns, StampNs now_ns) const;
   [[nodiscard]] std::size_t size() const { return alive_; }
   [[nodiscard]] double cell_m() const { return options_.cell_m; }
-  void clear();
 
   static constexpr float kYoungWeight = 0.2F;  ///< by hand
 

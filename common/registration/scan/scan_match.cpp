@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/pose_estimate.hpp"
+
 namespace liloc {
 namespace {
 
-constexpr double kUsualRangeM = 2.0;  // at which a turn shows as a shift; by hand
+constexpr std::size_t kFewestPairs = 6;  // as many as unknowns
+constexpr double kUsualRangeM = 2.0;     // at which a turn shows as a shift; by hand
 using Matrix6f = PatchWeights::Matrix6f;
 using Vector6f = PatchWeights::Vector6f;
 
@@ -92,16 +95,16 @@ struct Normal {
 /// Half-width of the kernel, squared: what noise and a guess of covariance `doubt` let the residual be. Of a
 /// wall that is little, along a direction that is in doubt it is much; a person who walked off is outside of
 /// both.
-float kernel_squared(const Pair& p, const Matrix6f& doubt, const Vector6f& J, bool vague,
+float kernel_squared(const Pair& p, const Matrix6f& doubt, const Vector6f& J, bool wide_prior,
                      const ScanMatchOptions& options) {
   const auto low = static_cast<float>(options.kernel_min_m);
-  const auto high = static_cast<float>(vague ? options.kernel_vague_m : options.kernel_max_m);
+  const auto high = static_cast<float>(wide_prior ? options.kernel_wide_m : options.kernel_max_m);
   const auto deviations = static_cast<float>(options.kernel_deviations);
   const float expected = p.sd * p.sd + J.dot(doubt * J);
   return std::clamp(deviations * deviations * expected, low * low, high * high);
 }
 
-Normal accumulate(const std::vector<Pair>& pairs, std::size_t patches, const Matrix6d& doubt, bool vague,
+Normal accumulate(const std::vector<Pair>& pairs, std::size_t patches, const Matrix6d& doubt, bool wide_prior,
                   const ScanMatchOptions& options) {
   Normal n;
   const Matrix6f doubtf = doubt.cast<float>();
@@ -110,7 +113,7 @@ Normal accumulate(const std::vector<Pair>& pairs, std::size_t patches, const Mat
   const std::vector<float> patch_weights = sums.weights(doubtf, options.patch);
   for (const Pair& p : pairs) {
     const Vector6f J = p.jacobian();
-    const float scaled = p.residual * p.residual / kernel_squared(p, doubtf, J, vague, options);
+    const float scaled = p.residual * p.residual / kernel_squared(p, doubtf, J, wide_prior, options);
     const float robust = patch_weights[p.patch] / ((1 + scaled) * (1 + scaled));
     const double weight = static_cast<double>(p.weight) * robust / (static_cast<double>(p.sd) * p.sd);
     n.noise += weight * static_cast<double>(p.normal_variance);
@@ -190,11 +193,23 @@ double MotionGuess::sd_m() const {
   return std::sqrt(covariance.diagonal().tail<3>().maxCoeff());
 }
 
-double MotionGuess::surprise_of(const Pose& T_map_sensor_other) const {
+double MotionGuess::squared_mahalanobis(const Pose& T_map_sensor_other) const {
   Vector6d off;
   off.head<3>() = so3_log(T_map_sensor_other.linear() * T_map_sensor.linear().transpose());
   off.tail<3>() = T_map_sensor_other.translation() - T_map_sensor.translation();
-  return off.dot(covariance.ldlt().solve(off));
+  return liloc::squared_mahalanobis(off, covariance);
+}
+
+std::string_view name_of(ScanStop stop) {
+  switch (stop) {
+    case ScanStop::converged:
+      return "converged";
+    case ScanStop::too_few_pairs:
+      return "too few pairs";
+    case ScanStop::iteration_limit:
+      return "iteration limit";
+  }
+  return "unknown";
 }
 
 Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
@@ -210,21 +225,26 @@ Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& fra
   std::vector<Pair> pairs;
   pairs.reserve(sources.surfels.size());
   double share = 1;
-  for (match.iterations = 0; match.iterations < options.max_iterations && !match.settled; ++match.iterations) {
+  for (match.iterations = 0; match.iterations < options.max_iterations && !match.converged();
+       ++match.iterations) {
     const MotionGuess doubt(match.T_map_sensor, share * guess.covariance);
-    const bool vague = doubt.sd_m() + kUsualRangeM * doubt.sd_rad() > options.vague_m;
+    const bool wide_prior = doubt.sd_m() + kUsualRangeM * doubt.sd_rad() > options.wide_prior_m;
     // What the guess may still be off shrinks with each step; while that is much, planes are looked for farther
     // away.
-    share *= vague ? 0.5 : 0.25;
-    find_pairs(map, sources.surfels, match.T_map_sensor, now_ns, vague ? 2 : 1, pairs);
-    if (pairs.size() < 6) break;
-    Normal n = accumulate(pairs, sources.patches, doubt.covariance, vague, options);
+    share *= wide_prior ? 0.5 : 0.25;
+    find_pairs(map, sources.surfels, match.T_map_sensor, now_ns, wide_prior ? 2 : 1, pairs);
+    if (pairs.size() < kFewestPairs) {
+      match.stop = ScanStop::too_few_pairs;
+      break;
+    }
+    Normal n = accumulate(pairs, sources.patches, doubt.covariance, wide_prior, options);
     drop_unobserved(n, options, match);
     add_prior(n, guess, certainty, match.T_map_sensor);
     match.information = n.H;
     const Vector6d step = n.H.ldlt().solve(n.b);
     apply(match.T_map_sensor, step);
-    match.settled = step.head<3>().norm() < options.stop_rad && step.tail<3>().norm() < options.stop_m;
+    if (step.head<3>().norm() < options.stop_rad && step.tail<3>().norm() < options.stop_m)
+      match.stop = ScanStop::converged;
   }
   grade(match, pairs, sources.surfels.size());
   match.T_map_sensor = normalized(match.T_map_sensor);

@@ -1,8 +1,10 @@
 #pragma once
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "common/base/result.hpp"
+#include "common/geometry/pose.hpp"
 #include "common/registration/points/patches.hpp"
 #include "common/registration/scan/local_map.hpp"
 
@@ -21,8 +23,8 @@ struct MotionGuess {
   /// Of the axis that is known least.
   [[nodiscard]] double sd_rad() const;
   [[nodiscard]] double sd_m() const;
-  /// Squared distance of a pose from the guess over its covariance: 6 on average where that is right.
-  [[nodiscard]] double surprise_of(const Pose& T_map_sensor_other) const;
+  /// Squared Mahalanobis distance of a pose from the guess.
+  [[nodiscard]] double squared_mahalanobis(const Pose& T_map_sensor_other) const;
 };
 
 /// Defaults are by hand where nothing else is said.
@@ -38,12 +40,20 @@ struct ScanMatchOptions {
   double kernel_min_m = 0.02;    ///< never narrower: the map's own surfels err by as much at edges
   double kernel_max_m = 0.10;    ///< nor wider
   PatchOptions patch;            ///< what stands or moves together counts together
-  double vague_m = 0.08;         ///< a guess that may shift points by more looks two cells far for planes,
-  double kernel_vague_m = 0.25;  ///< with a kernel as wide as this
+  double wide_prior_m = 0.08;    ///< a guess that may shift points by more looks two cells far for planes,
+  double kernel_wide_m = 0.25;   ///< with a kernel as wide as this
   double observed_noise =
       3;  ///< a direction with less information than so many times what noisy normals feign,
   double observed_share = 1e-4;  ///< or with less of the whole than so, is left to the guess
 };
+
+/// Why a match went no further.
+enum class ScanStop {
+  converged,        ///< the last step was below the stop limits
+  too_few_pairs,    ///< hardly a surfel of the frame has a plane near
+  iteration_limit,  ///< `max_iterations` are over
+};
+[[nodiscard]] std::string_view name_of(ScanStop stop);
 
 struct ScanMatch {
   Pose T_map_sensor = Pose::Identity();
@@ -57,7 +67,9 @@ struct ScanMatch {
   double paired = 0;   ///< share of the used surfels with any plane near, 0..1
   double rmse_m = 0;   ///< distance to the planes over the overlap
   int iterations = 0;
-  bool settled = false;  ///< the last step was below the stop limits
+  ScanStop stop = ScanStop::iteration_limit;
+
+  [[nodiscard]] bool converged() const { return stop == ScanStop::converged; }
 };
 
 /// Point-to-plane registration of a frame's surfels (sensor frame) to the map, with a Geman-McClure kernel

@@ -138,9 +138,9 @@ std::vector<Cell> search_coarse(const ScoreField& field, const Cloud& level,
   const int yaws = std::max(1, static_cast<int>(std::lround(360.0 / options.yaw_step_deg)));
   const int threads = std::clamp(options.threads, 1, 64);
   std::vector<Best> best(static_cast<std::size_t>(threads), Best(kHeap));
-  const RowCrests crests(field, RowSums::kBlock);
+  const BlockMaxima maxima(field, RowSums::kBlock);
   const auto work = [&](int worker) {  // fixed shares, so that the answer does not depend on scheduling
-    RowSums sums(field, crests);
+    RowSums sums(field, maxima);
     for (int yaw = worker; yaw < yaws && std::chrono::steady_clock::now() < deadline; yaw += threads) {
       const Eigen::Matrix3f R = yaw_rotation(yaw * 2 * M_PI / yaws, options.up_map).cast<float>();
       sums.take(offsets_of(level, R, field.cell_m()));
@@ -186,7 +186,7 @@ std::vector<Candidate> gravity_search(const Target& target, const Query& query,
       Eigen::Quaterniond::FromTwoVectors(up_sensor, options.up_map).toRotationMatrix();
   const Cloud level = level_points(query, R_level_sensor.cast<float>());
   const std::vector<Cell> cells = search_coarse(field, level, options);
-  Climber climber(target->field_fine(), target.movers(), options.up_map, level);
+  Climber climber(target->field_fine(), target.dynamic_mask(), options.up_map, level);
   std::vector<Candidate> candidates;
   for (const LevelPose& top : climb(climber, field, cells, options)) {
     Candidate candidate;

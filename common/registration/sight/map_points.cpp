@@ -60,13 +60,12 @@ MapPoints::MapPoints(const std::vector<Eigen::Vector3f>& sound, const std::vecto
                      MapOrder order)
     : sound_(every_other(sound, order)), stale_(every_other(stale, order)) {}
 
-SightView::Tally MapPoints::tally(const Runs& runs, const SightView& view,
-                                  const Eigen::Isometry3f& T_sensor_map, float tolerance_m) {
-  const std::array<HalfSpace, 6> bounds = view.bounds(T_sensor_map, tolerance_m);
+SightView::Tally MapPoints::tally(const Runs& runs, const Placed& placed) {
   SightView::Tally sum;
   const auto add = [&](std::size_t first_run, std::size_t end_run) {
     const std::size_t begin = first_run * kRun, end = std::min(end_run * kRun, runs.count);
-    const SightView::Tally more = view.tally(runs.points.run(begin, end - begin), T_sensor_map, tolerance_m);
+    const SightView::Tally more =
+        placed.view.tally(runs.points.run(begin, end - begin), placed.T_sensor_map, placed.tolerance_m);
     sum.agree += more.agree;
     sum.conflict += more.conflict;
   };
@@ -74,8 +73,8 @@ SightView::Tally MapPoints::tally(const Runs& runs, const SightView& view,
   for (std::size_t begin = 0; begin < runs.radii.size(); begin += kRunsAtOnce) {
     const std::size_t here = std::min(kRunsAtOnce, runs.radii.size() - begin);
     std::fill_n(in_view.begin(), here, 1);
-    reach_into(bounds.data(), bounds.size(), runs.centres.run(begin, here), runs.radii.data() + begin,
-               in_view.data());
+    reach_into(placed.bounds.data(), placed.bounds.size(), runs.centres.run(begin, here),
+               runs.radii.data() + begin, in_view.data());
     for (std::size_t i = 0; i < here; ++i) {
       const std::size_t first = i;
       while (i < here && in_view[i] != 0) ++i;
@@ -87,10 +86,11 @@ SightView::Tally MapPoints::tally(const Runs& runs, const SightView& view,
 
 SightView::Tally MapPoints::seen_by(const SightView& view, const Eigen::Isometry3f& T_sensor_map,
                                     float tolerance_m, MapShare share) const {
+  const Placed placed{view, T_sensor_map, tolerance_m, view.bounds(T_sensor_map, tolerance_m)};
   SightView::Tally sum;
   for (std::size_t part = 0; part < (share == MapShare::half ? 1 : 2); ++part) {
-    const SightView::Tally sound = tally(sound_[part], view, T_sensor_map, tolerance_m);
-    sum.agree += sound.agree + tally(stale_[part], view, T_sensor_map, tolerance_m).agree;
+    const SightView::Tally sound = tally(sound_[part], placed);
+    sum.agree += sound.agree + tally(stale_[part], placed).agree;
     sum.conflict += sound.conflict;
   }
   return sum;

@@ -30,8 +30,14 @@ class MapPoints {
     std::vector<float> radii;
   };
   static std::array<Runs, 2> every_other(const std::vector<Eigen::Vector3f>& points, MapOrder order);
-  static SightView::Tally tally(const Runs& runs, const SightView& view, const Eigen::Isometry3f& T_sensor_map,
-                                float tolerance_m);
+  /// A device's view at a pose, with what bounds it.
+  struct Placed {
+    const SightView& view;
+    const Eigen::Isometry3f& T_sensor_map;
+    float tolerance_m;
+    std::array<HalfSpace, 6> bounds;
+  };
+  static SightView::Tally tally(const Runs& runs, const Placed& placed);
 
   std::array<Runs, 2> sound_, stale_;
 };

@@ -37,7 +37,7 @@ Counts device_against_ceiling(const Target& target, const Cloud& points, const E
     for (std::size_t i = 0; i < here; ++i) {
       counts.agree += words[i] == kMeasured;
       counts.conflict += words[i] == kLookedThrough &&
-                         (target.movers() == nullptr || !target.movers()->at({x[i], y[i], z[i]}));
+                         (target.dynamic_mask() == nullptr || !target.dynamic_mask()->at({x[i], y[i], z[i]}));
     }
   }
   return counts;
@@ -58,7 +58,7 @@ Judgement judge(const Target& target, const Query& query, const Cloud& device_po
   result.conflict = device.conflict / count;
   result.score = result.agree - conflict_weight * result.conflict;
   if (query.view.empty()) return result;
-  if (map_points == nullptr) map_points = target.present ? &target.present->map_points : &target->map_points;
+  if (map_points == nullptr) map_points = target.dynamic ? &target.dynamic->map_points : &target->map_points;
   const SightView::Tally map =
       map_points->seen_by(query.view, T_map_sensor.inverse().cast<float>(), tolerance, map_share);
   const double seen = map.agree + map.conflict;

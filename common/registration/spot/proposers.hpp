@@ -20,7 +20,7 @@ class Proposer {
 /// A direction of the device's frame and one of the map's that are taken for the same: up.
 struct UpPair {
   Eigen::Vector3d sensor, map;
-  bool borne_out = false;  ///< the device's gravity and the planes it sees agree
+  bool supported = false;  ///< the device's gravity and the planes it sees agree
 };
 /// What to search with, likeliest first: gravity as the device says, and where the planes it sees contradict,
 /// as they say. Of a device that says nothing, the likeliest that its planes say, alone: features find sooner

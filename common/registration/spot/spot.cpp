@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/registration/spot/settle.hpp"
+#include "common/registration/spot/polish.hpp"
 
 namespace liloc {
 namespace {
@@ -29,7 +29,7 @@ void sketch(const SpotProblem& problem, std::vector<Candidate>* candidates) {
   }
 }
 
-/// Lines of sight settle what surfaces do not, unless something else explains all by far better.
+/// Free space polishes what surfaces do not hold, unless something else explains all by far better.
 std::vector<Hypothesis> refined_of(const SpotProblem& problem, const std::vector<Candidate>& candidates) {
   std::vector<Hypothesis> refined;
   bool clean = false;
@@ -40,7 +40,7 @@ std::vector<Hypothesis> refined_of(const SpotProblem& problem, const std::vector
   if (problem.target.views.empty()) return refined;
   for (std::size_t i = 0; i < refined.size(); ++i)
     if (!is_clean(refined[i]) && (!clean || candidates[i].score > candidates[0].score - problem.judging.rival))
-      refined[i] = settle(problem, candidates[i].T_map_sensor, std::move(refined[i]));
+      refined[i] = polish(problem, candidates[i].T_map_sensor, std::move(refined[i]));
   return refined;
 }
 

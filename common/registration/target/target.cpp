@@ -18,7 +18,8 @@ constexpr FieldOptions kFineField{0.1, 0.08, -40, 0};
 constexpr double kBeside_m = 0.3;  // of what is seen of somebody from above: the rest, and a step in 0.1 s
 // Within which they hide a surface from the device, or are one themselves; by hand.
 constexpr double kAround_m = 0.45;
-constexpr float kGone_m = 0.05F;  // a voxel; by hand
+constexpr float kGone_m = 0.05F;              // a voxel; by hand
+constexpr double kRadius = 2.5, kWidest = 8;  // of neighbourhoods, in voxels; by hand; DECISIONS.md
 
 /// Whether a ceiling sensor looks through the place by now and none sees anything there.
 bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
@@ -33,7 +34,7 @@ bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
 
 /// Surfaces near `around`, and those that are gone.
 std::vector<std::uint8_t> stale_points(const Cloud& cloud_map, const std::vector<SightView>& views,
-                                       const Vicinity& around) {
+                                       const VoxelMask& around) {
   std::vector<std::uint8_t> stale(cloud_map.size(), 0);
   for (std::size_t i = 0; i < cloud_map.size(); ++i)
     stale[i] = around.at(cloud_map.points[i]) || gone(views, cloud_map.points[i]) ? 1 : 0;
@@ -71,18 +72,6 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
     thin.normals.pop_back();
   }
   return thin;
-}
-
-/// Points with normals. A cloud that was thinned to few bytes is sparser than its voxels, and nearly all of it
-/// would hang in the air: there neighbourhoods widen until it holds together.
-Cloud with_normals_of(const Cloud& seen, double voxel_size_m) {
-  // In voxels; by hand; DECISIONS.md.
-  constexpr double kRadius = 2.5, kWiden = 1.5, kWidest = 8;
-  double radius = kRadius;
-  Cloud cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
-  while (3 * cloud.size() < seen.size() && (radius *= kWiden) < kWidest)
-    cloud = with_normals(seen, Eigen::Vector3f::Zero(), {radius * voxel_size_m, 5});
-  return cloud;
 }
 
 }  // namespace
@@ -140,18 +129,18 @@ const ScoreField& Surfaces::field_fine() const {
   return field_fine_;
 }
 
-Present::Present(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
-                 const Cloud& moving_map)
-    : movers(moving_map.points, kBeside_m),
-      stale(stale_points(surfaces->coarse, views, Vicinity(moving_map.points, kAround_m))),
+DynamicRegions::DynamicRegions(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
+                               const Cloud& moving_map)
+    : mask(moving_map.points, kBeside_m),
+      stale(stale_points(surfaces->coarse, views, VoxelMask(moving_map.points, kAround_m))),
       map_points(map_points_of(surfaces->coarse, stale)),
       surfaces_(std::move(surfaces)) {}
 
-const ScoreField& Present::field_coarse() const {
-  if (movers.empty()) return surfaces_->field_coarse();
+const ScoreField& DynamicRegions::field_coarse() const {
+  if (mask.empty()) return surfaces_->field_coarse();
   std::call_once(once_, [this] {
     field_coarse_ = surfaces_->field_coarse();
-    field_coarse_.forget_free_space(movers);
+    field_coarse_.forget_free_space(mask);
   });
   return field_coarse_;
 }
@@ -167,7 +156,10 @@ Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOpt
   Cloud seen = voxel_downsample(cloud_sensor, options.voxel_size_m);
   if (camera != nullptr) query.view = SightView::from_cloud(seen, *camera, options.voxel_size_m, 80);
   seen.points.insert(seen.points.end(), extra_sensor.points.begin(), extra_sensor.points.end());
-  query.cloud = with_normals_of(seen, options.voxel_size_m);
+  // A cloud that was thinned to few bytes is sparser than its voxels, and nearly all of it would hang in the
+  // air.
+  query.cloud = with_normals(seen, Eigen::Vector3f::Zero(),
+                             {kRadius * options.voxel_size_m, 5, kWidest * options.voxel_size_m});
   query.medium = voxel_downsample(query.cloud, 2 * options.voxel_size_m);
   query.sparse = spread_points(query.cloud, options.sparse_points, options.voxel_size_m, options.seed);
   return query;

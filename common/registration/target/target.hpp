@@ -10,7 +10,7 @@
 #include "common/geometry/cloud.hpp"
 #include "common/registration/field/score_field.hpp"
 #include "common/registration/points/nearest_grid.hpp"
-#include "common/registration/points/vicinity.hpp"
+#include "common/registration/points/voxel_mask.hpp"
 #include "common/registration/sight/map_points.hpp"
 #include "common/registration/sight/sight.hpp"
 
@@ -51,14 +51,14 @@ class Surfaces {
   mutable ScoreField field_coarse_, field_fine_;
 };
 
-/// Where the ceiling's word does not count right now, because somebody moves there or has just left.
-class Present {
+/// Where the ceiling's word does not count at this moment, because somebody moves there or has just left.
+class DynamicRegions {
  public:
   /// `moving_map`: what the ceiling sees move, thinned.
-  Present(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
-          const Cloud& moving_map);
+  DynamicRegions(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
+                 const Cloud& moving_map);
 
-  const Vicinity movers;                  ///< around whom lines of sight past them say nothing
+  const VoxelMask mask;                   ///< where somebody moves: lines of sight past them say nothing
   const std::vector<std::uint8_t> stale;  ///< of each point of Surfaces::coarse: hidden, or not there any more
   const MapPoints map_points;             ///< the same points for the judge
 
@@ -74,16 +74,16 @@ class Present {
 /// What a spot is registered against: surfaces, which many moments share, and what the ceiling sees right now.
 struct Target {
   std::shared_ptr<const Surfaces> surfaces;
-  std::vector<SightView> views;                 ///< empty when two bare clouds are aligned
-  std::shared_ptr<const Present> present = {};  ///< null: nothing moves
+  std::vector<SightView> views;                        ///< empty when two bare clouds are aligned
+  std::shared_ptr<const DynamicRegions> dynamic = {};  ///< null: nothing moves
 
   [[nodiscard]] const Surfaces* operator->() const { return surfaces.get(); }
   /// Null: nothing moves.
-  [[nodiscard]] const Vicinity* movers() const {
-    return present && !present->movers.empty() ? &present->movers : nullptr;
+  [[nodiscard]] const VoxelMask* dynamic_mask() const {
+    return dynamic && !dynamic->mask.empty() ? &dynamic->mask : nullptr;
   }
   [[nodiscard]] const ScoreField& field_coarse() const {
-    return present ? present->field_coarse() : surfaces->field_coarse();
+    return dynamic ? dynamic->field_coarse() : surfaces->field_coarse();
   }
 };
 

@@ -10,6 +10,7 @@
 
 #include "common/wire/cdr.hpp"
 #include "common/wire/convert_spot.hpp"
+#include "common/wire/convert_status.hpp"
 #include "samples.hpp"
 
 namespace liloc::wire {
@@ -40,7 +41,7 @@ Bytes kept(const char* name, const Bytes& bytes) {
 class GoldenFiles : public testing::Test {
  protected:
   const SpotRequest request = sample_request();
-  const Participant seat = Participant::create({.domain = 128}).value();
+  const Participant seat = Participant::create({.domain = 114}).value();
   const RequestSample sample = to_wire(request, kSession).value();
   const Cdr<liloc_msg_SpotRequest> requests = Cdr<liloc_msg_SpotRequest>::create(seat, sample.message).value();
   const Cdr<liloc_msg_SpotReply> replies =
@@ -77,6 +78,25 @@ TEST_F(GoldenFiles, ThePresentVersionsReplyIsDecodedToWhatWasAnswered) {
   EXPECT_EQ(decoded->advice, Advice::twin);
   ASSERT_TRUE(decoded->T_map_odom);
   EXPECT_TRUE(decoded->T_map_odom->isApprox(*sample_reply().T_map_odom));
+}
+
+TEST_F(GoldenFiles, ThePresentVersionsStatusIsDecodedToWhatWasTold) {
+  const ServerStatus status = sample_status();
+  const auto told = to_wire(status);
+  const auto statuses = Cdr<liloc_msg_ServerStatus>::create(seat, told.message).value();
+  const Bytes bytes = kept("server_status.cdr", statuses.encode(told.message));
+  ASSERT_EQ(bytes, statuses.encode(told.message)) << "changed bytes: raise the version, LILOC_RENEW_GOLDEN=1";
+  const auto message = statuses.decode(bytes);
+  ASSERT_TRUE(message);
+  const auto decoded = from_wire(*message);
+  ASSERT_TRUE(decoded) << decoded.error().message;
+  EXPECT_EQ(decoded->server_id, "edge1");
+  ASSERT_EQ(decoded->lidars.size(), 1U);
+  EXPECT_EQ(decoded->lidars[0].state, LidarState::slow);
+  EXPECT_EQ(decoded->lidars[0].usual_range_m, 4);
+  EXPECT_TRUE(decoded->lidars[0].clock_corrected);
+  EXPECT_EQ(decoded->refused, 10U);
+  EXPECT_EQ(decoded->codecs, status.codecs);
 }
 
 // Requests of version 1 have the layout of version 2: a newer server reads whose they are, and refuses by

@@ -68,13 +68,8 @@ TEST(Golden, SpotReply) {
 }
 
 TEST(Golden, ServerStatus) {
-  ServerStatus status{"edge1", 1,
-                      2.5,     {{"ceiling0", LidarState::slow, 3.5, 4, 5, "step", 0.5, 2, 4, -0.25, true}},
-                      6,       7,
-                      8,       9,
-                      10,      {CloudCodec::draco, CloudCodec::voxel}};
   EXPECT_EQ(
-      cdr_of(to_wire(status).message),
+      cdr_of(to_wire(sample_status()).message),
       "000100020200000006000000656467653100000001(13)044001000000090000006365696c696e67300002(12)0c4004(7)05"
       "(7)0500000073746570(14)e03f(7)40(6)1040(6)d0bf010000000600000007(7)08(7)09(7)0a(7)0200000001030000");
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Messages with every field set, for the tests of this room.
 #include "common/protocol/spot.hpp"
+#include "common/wire/status.hpp"
 
 namespace liloc::wire {
 
@@ -48,6 +49,14 @@ inline SpotReply sample_reply(const SpotRequest& request = sample_request()) {
   r.server_received_ns = request.stamp_ns + 0x30;
   r.server_sent_ns = request.stamp_ns + 0x40;
   return r;
+}
+
+inline ServerStatus sample_status() {
+  return {"edge1", 1,
+          2.5,     {{"ceiling0", LidarState::slow, 3.5, 4, 5, "step", 0.5, 2, 4, -0.25, true}},
+          6,       7,
+          8,       9,
+          10,      {CloudCodec::draco, CloudCodec::voxel}};
 }
 
 }  // namespace liloc::wire

@@ -40,20 +40,6 @@ TEST(GlobalCloud, MatchesTheNearestFramesWithin100Ms) {
   EXPECT_THAT(cloud.nearest(kT0 + from_ms(2000)).error().message, testing::HasSubstr("within 100 ms"));
 }
 
-TEST(GlobalCloud, TheLargestValueIsNoReturnWhateverTheScale) {
-  Site site = two_lidars();
-  for (GlobalLidar& lidar : site.global_lidars) lidar.camera.depth_scale_m = 0.0001;
-  GlobalCloud cloud(site, {});
-  DepthImage half = wall(kT0, 20'000);
-  std::fill_n(half.units.begin(), 32 * 12, std::uint16_t{65535});  // a wall at 6.55 m, if it were one
-  ASSERT_TRUE(cloud.add_depth(0, half));
-  const auto snapshot = cloud.nearest(kT0);
-  ASSERT_TRUE(snapshot);
-  const auto& points = (*snapshot)->target().surfaces->cloud.points;
-  EXPECT_FALSE(points.empty());
-  for (const auto& p : points) EXPECT_LT(p.z(), 3) << p.transpose();
-}
-
 TEST(GlobalCloud, TheNewestSnapshotIsBuiltBeforeAnyoneAsks) {
   GlobalCloud cloud(two_lidars(), {});
   const auto frame = [&](std::size_t lidar, int at_ms) {

@@ -66,14 +66,14 @@ TEST_P(PoseFilterLaw, ItsCovarianceIsThatOfItsErrors) {
   EXPECT_NEAR(sum / kWalks, 6, 1.0);  // 6 +- 4 sd of the mean of 200
 }
 
-TEST_P(PoseFilterLaw, SurpriseIsSixOnAverageWhereBothAreHonest) {
+TEST_P(PoseFilterLaw, SquaredMahalanobisIsSixOnAverageWhereBothAreHonest) {
   Noise noise(GetParam());
   const Matrix6d before = diagonal(0.004, 0.01), spot = diagonal(0.003, 0.02);
   const Pose truth = Pose(Eigen::Translation3d(3, 2, 1) * Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()));
   double sum = 0;
   constexpr int kSpots = 400;
   for (int i = 0; i < kSpots; ++i)
-    sum += surprise_of({noise.disturbed(truth, before), before}, {noise.disturbed(truth, spot), spot});
+    sum += squared_mahalanobis({noise.disturbed(truth, before), before}, {noise.disturbed(truth, spot), spot});
   EXPECT_NEAR(sum / kSpots, 6, 0.7);  // 6 +- 4 sd of the mean of 400
 }
 

@@ -19,8 +19,8 @@ ServerFacts busy() {
   facts.service.clients_verified = 2;
   facts.service.clients_refused = 1;
   facts.samples_lost = 11;
-  facts.lidars.push_back({{"ceiling0", wire::LidarState::ok, 7.5, 100, 2, ""}, 0.25, 0.75});
-  facts.lidars.push_back({{"ceiling1", wire::LidarState::waiting, 0, 0, 0, ""}, std::nullopt, 0});
+  facts.lidars.push_back({{"ceiling0", wire::LidarState::ok, 7.5, 100, 2, "", 0.75}, 0.25});
+  facts.lidars.push_back({{"ceiling1", wire::LidarState::waiting, 0, 0, 0, ""}, std::nullopt});
   return facts;
 }
 

@@ -29,8 +29,8 @@ TEST_P(FieldLaw, RowsAddUpToWhatPlacesScoreOneByOne) {
   const WatchedRoom w = watched_room(GetParam());
   const ScoreField& field = w.target->field_coarse();
   const std::vector<CellOffset> offsets = some_offsets(GetParam());
-  const RowCrests crests(field, RowSums::kBlock);
-  RowSums sums(field, crests);
+  const BlockMaxima maxima(field, RowSums::kBlock);
+  RowSums sums(field, maxima);
   sums.take(offsets);
   const auto cell = static_cast<float>(field.cell_m());
   std::vector<std::uint32_t> above;
@@ -51,8 +51,8 @@ TEST_P(FieldLaw, RowsAddUpToWhatPlacesScoreOneByOne) {
 TEST_P(FieldLaw, SumsAboveAThresholdAreFoundAndExact) {
   const WatchedRoom w = watched_room(GetParam());
   const ScoreField& field = w.target->field_coarse();
-  const RowCrests crests(field, RowSums::kBlock);
-  RowSums sums(field, crests);
+  const BlockMaxima maxima(field, RowSums::kBlock);
+  RowSums sums(field, maxima);
   sums.take(some_offsets(GetParam()));
   std::vector<std::uint32_t> above;
   for (int z = 0; z < field.size().z(); z += 2) {
@@ -70,18 +70,18 @@ TEST_P(FieldLaw, SumsAboveAThresholdAreFoundAndExact) {
   }
 }
 
-TEST_P(FieldLaw, ACrestIsTheGreatestCellOfItsBlockOrOfAStepBeside) {
+TEST_P(FieldLaw, AMaximumIsTheGreatestCellOfItsBlockOrOfAStepBeside) {
   const WatchedRoom w = watched_room(GetParam());
   const ScoreField& field = w.target->field_coarse();
-  const RowCrests crests(field, 16);
+  const BlockMaxima maxima(field, 16);
   for (int plane = 0; plane < ScoreField::kDirections; ++plane)
     for (int z = 0; z < field.size().z(); z += 3)
       for (int y = 0; y < field.size().y(); ++y)
         for (int x = 4 - field.pad(); x <= field.size().x(); x += 3) {
           const std::int8_t* row = field.row(y, z, plane) + x;
-          const int crest = crests.column(x, z, plane)[y];
-          ASSERT_GE(crest, *std::max_element(row, row + 16));
-          ASSERT_LE(crest, *std::max_element(row - 3, row + 20));
+          const int maximum = maxima.column(x, z, plane)[y];
+          ASSERT_GE(maximum, *std::max_element(row, row + 16));
+          ASSERT_LE(maximum, *std::max_element(row - 3, row + 20));
         }
 }
 
@@ -158,14 +158,14 @@ TEST_P(FieldLaw, WhoeverMovesMakesEmptySpaceUnknownAndLeavesSurfaces) {
   std::uniform_real_distribution<float> x(1, 5), y(1, 4), z(0.6F, 2);
   do empty = {x(rng), y(rng), z(rng)};
   while (field.at(empty, ScoreField::kUp) >= 0);
-  const Present present(w.target.surfaces, w.target.views, {{empty}, {}});
-  EXPECT_TRUE(present.movers.at(empty));
-  EXPECT_FALSE(present.movers.at(empty + Eigen::Vector3f(1.5F, 0, 0)));
-  const ScoreField& masked = present.field_coarse();
+  const DynamicRegions regions(w.target.surfaces, w.target.views, {{empty}, {}});
+  EXPECT_TRUE(regions.mask.at(empty));
+  EXPECT_FALSE(regions.mask.at(empty + Eigen::Vector3f(1.5F, 0, 0)));
+  const ScoreField& masked = regions.field_coarse();
   EXPECT_EQ(masked.at(empty, ScoreField::kUp), 0);
   for (const Eigen::Vector3f& p : w.target->coarse.points)
     ASSERT_EQ(masked.at(p, ScoreField::kAny), field.at(p, ScoreField::kAny));
-  EXPECT_EQ(&Present(w.target.surfaces, w.target.views, {}).field_coarse(), &field);
+  EXPECT_EQ(&DynamicRegions(w.target.surfaces, w.target.views, {}).field_coarse(), &field);
 }
 
 TEST_P(FieldLaw, ClimbingEndsNearTheDeviceAndNeverLower) {

@@ -96,5 +96,25 @@ TEST(Normals, PointsThatHangInTheAirAreDropped) {
   EXPECT_TRUE(with_normals({}, {0, 0, 0}).empty());
 }
 
+TEST(Normals, NeighbourhoodsOfASparseCloudWidenUntilAThirdHoldsTogether) {
+  const Eigen::Vector3f sensor(0, 0, 3);
+  Cloud sparse;
+  for (int i = 0; i < 400; ++i)
+    sparse.points.emplace_back(0.15F * static_cast<float>(i % 20), 0.15F * static_cast<float>(i / 20), 0.0F);
+  EXPECT_TRUE(with_normals(sparse, sensor, {0.125, 5}).empty());
+  EXPECT_TRUE(with_normals(sparse, sensor, {0.125, 5, 0.18}).empty()) << "the next step is beyond the widest";
+  const Cloud wide = with_normals(sparse, sensor, {0.125, 5, 0.4});
+  EXPECT_EQ(wide.points, with_normals(sparse, sensor, {0.1875, 5}).points);
+  EXPECT_EQ(wide.size(), 18U * 18U) << "those at the rim have four neighbours, themselves among them";
+}
+
+TEST(Normals, ACloudThatHoldsTogetherIsNotWidened) {
+  const Cloud sheet = wavy_sheet(2);
+  const Cloud usual = with_normals(sheet, {0, 0, 3}, {0.125, 5}),
+              wide = with_normals(sheet, {0, 0, 3}, {0.125, 5, 0.4});
+  EXPECT_EQ(wide.points, usual.points);
+  EXPECT_EQ(wide.normals, usual.normals);
+}
+
 }  // namespace
 }  // namespace liloc

@@ -68,10 +68,10 @@ TEST(LocalMap, FullSurfelsStayWhereTheyWere) {
   };
   insert_at(0.05F, 1);
   insert_at(0.06F, 2);
-  const float settled = map.find(s.mean, s.normal)->surfel.mean.z();
-  EXPECT_NEAR(settled, 0.055F, 1e-4F);
+  const float frozen = map.find(s.mean, s.normal)->surfel.mean.z();
+  EXPECT_NEAR(frozen, 0.055F, 1e-4F);
   insert_at(0.09F, 3);
-  EXPECT_FLOAT_EQ(map.find(s.mean, s.normal)->surfel.mean.z(), settled);
+  EXPECT_FLOAT_EQ(map.find(s.mean, s.normal)->surfel.mean.z(), frozen);
 }
 
 TEST(LocalMap, WhatMovedAwayIsCarved) {

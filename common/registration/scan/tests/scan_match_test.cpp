@@ -143,7 +143,23 @@ TEST(ScanMatch, APersonWhoWalksOffDoesNotTakeASureGuessAlong) {
   EXPECT_LT(error_m(corridor(), person, {T, 0.001, 0.004}, from_ms(970)), 0.006);
 }
 
-TEST(ScanMatch, AVagueGuessIsMended) {
+TEST(ScanMatch, SaysWhyItStopped) {
+  const auto room = furnished_room(1);
+  const Pose T = looking({2.6, 2.2, 1.2}, 0.7, 0.2);
+  const auto frame = surfels_of(room, T, 1, 0.004);
+  LocalMap map;
+  map.insert(T, frame, 1);
+  const auto stopped = [&](const Pose& T_guess, const ScanMatchOptions& options) {
+    return match_scan(map, frame, {T_guess, 0.02, 0.02}, 2, options)->stop;
+  };
+  EXPECT_EQ(stopped(T, {}), ScanStop::converged);
+  EXPECT_EQ(stopped(disturbed(T, 1, 0.02, 0.02), {.max_iterations = 1}), ScanStop::iteration_limit);
+  Pose T_far = T;
+  T_far.translation().x() += 100;
+  EXPECT_EQ(stopped(T_far, {}), ScanStop::too_few_pairs);
+}
+
+TEST(ScanMatch, AWidePriorIsMended) {
   const auto room = furnished_room(2);
   const Pose T = looking({2.6, 2.2, 1.2}, 1.4, 0.2);
   LocalMap map;

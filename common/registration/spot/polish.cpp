@@ -1,4 +1,4 @@
-#include "common/registration/spot/settle.hpp"
+#include "common/registration/spot/polish.hpp"
 
 #include <Eigen/Geometry>
 #include <optional>
@@ -21,7 +21,7 @@ class Scorer {
     for (std::size_t i = 0; i < target->coarse.size(); i += kStride) {
       const Eigen::Vector3f& p = target->coarse.points[i];
       if (!problem.query.view.may_see(T_sensor_map * p, kMargin_m)) continue;
-      (target.present && target.present->stale[i] != 0 ? stale : sound).push_back(p);
+      (target.dynamic && target.dynamic->stale[i] != 0 ? stale : sound).push_back(p);
     }
     near_.emplace(sound, stale, MapOrder::as_given);
   }
@@ -65,7 +65,7 @@ bool improve(const Scorer& score, double shift_m, double turn_rad, Pose* T, doub
   return improved;
 }
 
-Pose climbed(const SpotProblem& problem, Pose T, const SettleOptions& options) {
+Pose climbed(const SpotProblem& problem, Pose T, const PolishOptions& options) {
   const Scorer score(problem, T);
   double best = score(T), shift_m = options.shift_m, turn_rad = options.turn_rad;
   for (int halving = 0; halving <= options.halvings; ++halving, shift_m /= 2, turn_rad /= 2)
@@ -77,20 +77,20 @@ Pose climbed(const SpotProblem& problem, Pose T, const SettleOptions& options) {
 
 }  // namespace
 
-bool is_clean(const Hypothesis& hypothesis, const SettleOptions& options) {
+bool is_clean(const Hypothesis& hypothesis, const PolishOptions& options) {
   const Judgement& j = hypothesis.judgement;
   return j.agree >= options.clean_agree && j.overlap() >= options.clean && j.map_agree >= options.clean;
 }
 
-Hypothesis settle(const SpotProblem& problem, const Pose& T_map_sensor_guess, Hypothesis refined,
-                  const SettleOptions& options) {
+Hypothesis polish(const SpotProblem& problem, const Pose& T_map_sensor_guess, Hypothesis refined,
+                  const PolishOptions& options) {
   SpotProblem held = problem, free = problem;
   held.judging.refine.hold = options.hold;
   free.judging.refine.sparse_iterations = 0;
-  Hypothesis settled = refine_and_judge(held, climbed(problem, T_map_sensor_guess, options));
-  Hypothesis freed = refine_and_judge(free, settled.T_map_sensor());
-  if (freed.judgement.score > settled.judgement.score - options.as_good) settled = std::move(freed);
-  return settled.judgement.score > refined.judgement.score + options.as_good ? settled : refined;
+  Hypothesis polished = refine_and_judge(held, climbed(problem, T_map_sensor_guess, options));
+  Hypothesis freed = refine_and_judge(free, polished.T_map_sensor());
+  if (freed.judgement.score > polished.judgement.score - options.as_good) polished = std::move(freed);
+  return polished.judgement.score > refined.judgement.score + options.as_good ? polished : refined;
 }
 
 }  // namespace liloc

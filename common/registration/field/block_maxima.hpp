@@ -9,15 +9,15 @@ namespace liloc {
 
 /// The greatest cell of each short stretch of a field's rows. Sums of them bound what a block of places can be
 /// worth, without looking at each.
-class RowCrests {
+class BlockMaxima {
  public:
   // Cells from the start of a stretch to that of the next; by hand, DECISIONS.md.
   static constexpr int kStep = 4;
   static constexpr int kPad = 40;  ///< rows of zeros before and behind; devices see 8 m far, at 0.2 m
 
-  RowCrests() = default;
+  BlockMaxima() = default;
   /// `block`: cells, a multiple of kStep.
-  RowCrests(const ScoreField& field, int block);
+  BlockMaxima(const ScoreField& field, int block);
 
   /// Of row y = 0, from which those of other rows run on: no cell x .. x + block - 1 is greater. y may run from
   /// -kPad to the field's size, rounded up to 32, + kPad.

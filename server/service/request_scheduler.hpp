@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "common/base/line_limit.hpp"
+#include "server/service/request_queue.hpp"
 #include "server/service/service_options.hpp"
 #include "server/service/sessions.hpp"
-#include "server/service/waiting_line.hpp"
 
 namespace liloc {
 
@@ -24,15 +24,15 @@ struct ServiceCounters {
   std::uint32_t clients_verified = 0, clients_provisional = 0, clients_refused = 0;
 };
 
-class Desk {
+class RequestScheduler {
  public:
   using Answer = std::function<void(const wire::Sender&, SpotReply)>;
 
-  /// `answer` is called from any of the desk's threads and from `submit`; never while a lock is held.
-  Desk(ServiceOptions options, ServiceBackend backend, Answer answer);
-  ~Desk();
-  Desk(const Desk&) = delete;
-  Desk& operator=(const Desk&) = delete;
+  /// `answer` is called from any of the scheduler's threads and from `submit`; never while a lock is held.
+  RequestScheduler(ServiceOptions options, ServiceBackend backend, Answer answer);
+  ~RequestScheduler();
+  RequestScheduler(const RequestScheduler&) = delete;
+  RequestScheduler& operator=(const RequestScheduler&) = delete;
 
   /// Never blocks for long. Any thread.
   void submit(wire::Arrival arrival);
@@ -50,6 +50,7 @@ class Desk {
  private:
   void work();
   void enqueue(wire::Arrival arrival);
+  [[nodiscard]] bool must_wait(const wire::Arrival& arrival) const;
   [[nodiscard]] std::optional<wire::Arrival> take_waiting(const std::string& client_id);
   void tell(Stage stage, std::chrono::steady_clock::time_point since) const;
   void work_on(const wire::Arrival& arrival);
@@ -60,11 +61,12 @@ class Desk {
   const ServiceOptions options_;
   const ServiceBackend backend_;
   const Answer answer_;
-  mutable std::mutex mutex_;           // guards what follows, down to stopping_
-  std::condition_variable may_begin_;  // a request is new, a client's last one was answered, or the desk stops
+  mutable std::mutex mutex_;  // guards what follows, down to stopping_
+  std::condition_variable
+      may_begin_;  // a request is new, a client's last one was answered, or the scheduler stops
   Sessions sessions_;
   std::deque<wire::Arrival> held_;
-  WaitingLine line_;
+  RequestQueue queue_;
   SourceLimit refusals_, failures_, twins_;  // lines of the log, by client
   bool stopping_ = false;
   std::atomic<std::uint64_t> answered_ = 0, verified_ = 0, refused_ = 0;

@@ -1,4 +1,4 @@
-#include "common/registration/points/vicinity.hpp"
+#include "common/registration/points/voxel_mask.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-class VicinityLaw : public testing::TestWithParam<unsigned> {
+class VoxelMaskLaw : public testing::TestWithParam<unsigned> {
  protected:
   [[nodiscard]] Eigen::Vector3f anywhere() {
     std::uniform_real_distribution<float> unit(0, 1);
@@ -31,57 +31,57 @@ class VicinityLaw : public testing::TestWithParam<unsigned> {
   std::mt19937_64 rng_{GetParam()};
 };
 
-TEST_P(VicinityLaw, ReachIsADistance) {
+TEST_P(VoxelMaskLaw, ReachIsADistance) {
   const Points points = some();
   Points given = points;
   given.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
-  const Vicinity vicinity(given, 0.3);
+  const VoxelMask mask(given, 0.3);
   constexpr float kBlur_m = 0.08F;  // a cell's half diagonal, and a little
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3f p = anywhere();
     const float nearest = distance(points, p);
-    ASSERT_TRUE(vicinity.at(p) || nearest > 0.3F - kBlur_m) << nearest;
-    ASSERT_TRUE(!vicinity.at(p) || nearest < 0.3F + kBlur_m) << nearest;
-    inside += vicinity.at(p);
+    ASSERT_TRUE(mask.at(p) || nearest > 0.3F - kBlur_m) << nearest;
+    ASSERT_TRUE(!mask.at(p) || nearest < 0.3F + kBlur_m) << nearest;
+    inside += mask.at(p);
   }
   EXPECT_GT(inside, 20);
 }
 
-TEST_P(VicinityLaw, CoveringMissesNothingInReach) {
+TEST_P(VoxelMaskLaw, CoveringMissesNothingInReach) {
   const Points points = some();
-  const Vicinity vicinity = Vicinity::covering(points, 0.3);
+  const VoxelMask mask = VoxelMask::covering(points, 0.3);
   int inside = 0, outside = 0;
   for (int i = 0; i < 5000; ++i) {
     const Eigen::Vector3f p = anywhere();
     const float nearest = distance(points, p);
-    ASSERT_TRUE(vicinity.at(p) || nearest > 0.3F) << nearest;
-    ASSERT_TRUE(!vicinity.at(p) || nearest < 0.3F + 0.14F) << nearest;
-    ++(vicinity.at(p) ? inside : outside);
+    ASSERT_TRUE(mask.at(p) || nearest > 0.3F) << nearest;
+    ASSERT_TRUE(!mask.at(p) || nearest < 0.3F + 0.14F) << nearest;
+    ++(mask.at(p) ? inside : outside);
   }
   EXPECT_GT(inside, 100);
   EXPECT_GT(outside, 100);
 }
 
-TEST_P(VicinityLaw, CoveringMissesNothingFarApartEither) {  // cells grow with the extent
+TEST_P(VoxelMaskLaw, CoveringMissesNothingFarApartEither) {  // cells grow with the extent
   Points points = some();
   for (Eigen::Vector3f& p : points) p *= 100;
-  const Vicinity vicinity = Vicinity::covering(points, 0.3);
+  const VoxelMask mask = VoxelMask::covering(points, 0.3);
   std::mt19937_64 rng(GetParam());
   std::uniform_real_distribution<float> unit(-1, 1);
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Vector3f off(unit(rng), unit(rng), unit(rng));
-    EXPECT_TRUE(vicinity.at(points[static_cast<std::size_t>(i) % points.size()] + 0.3F * off.normalized()));
+    EXPECT_TRUE(mask.at(points[static_cast<std::size_t>(i) % points.size()] + 0.3F * off.normalized()));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, VicinityLaw, testing::Range(1U, 7U));
+INSTANTIATE_TEST_SUITE_P(Seeds, VoxelMaskLaw, testing::Range(1U, 7U));
 
-TEST(Vicinity, OfNothingIsNowhere) {
-  EXPECT_TRUE(Vicinity().empty());
-  EXPECT_TRUE(Vicinity({}, 0.2).empty());
-  EXPECT_FALSE(Vicinity({}, 0.2).at(Eigen::Vector3f::Zero()));
-  EXPECT_TRUE(Vicinity::covering({}, 0.2).empty());
+TEST(VoxelMask, OfNothingIsNowhere) {
+  EXPECT_TRUE(VoxelMask().empty());
+  EXPECT_TRUE(VoxelMask({}, 0.2).empty());
+  EXPECT_FALSE(VoxelMask({}, 0.2).at(Eigen::Vector3f::Zero()));
+  EXPECT_TRUE(VoxelMask::covering({}, 0.2).empty());
 }
 
 }  // namespace

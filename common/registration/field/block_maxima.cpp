@@ -1,4 +1,4 @@
-#include "common/registration/field/row_crests.hpp"
+#include "common/registration/field/block_maxima.hpp"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ LILOC_WIDEST void raise(const std::int8_t* others, std::size_t count, std::int8_
 
 }  // namespace
 
-RowCrests::RowCrests(const ScoreField& field, int block)
+BlockMaxima::BlockMaxima(const ScoreField& field, int block)
     : pad_(field.pad()),
       depth_(field.size().z()),
       columns_((field.stride() + 31) / kStep),
@@ -35,7 +35,7 @@ RowCrests::RowCrests(const ScoreField& field, int block)
 }
 
 /// The greatest of each kStep cells, y fastest.
-void RowCrests::take_steps(const ScoreField& field, int z, int plane, std::int8_t* steps) const {
+void BlockMaxima::take_steps(const ScoreField& field, int z, int plane, std::int8_t* steps) const {
   for (int y = 0; y < field.size().y(); ++y) {
     const std::int8_t* row = field.row(y, z, plane) - pad_;
     std::int8_t* step = steps + y;

@@ -9,10 +9,10 @@
 namespace liloc {
 
 /// What the client tells ROS. Any thread.
-class RosFace {
+class RosBridge {
  public:
-  [[nodiscard]] static Result<std::unique_ptr<RosFace>> create(const wire::Participant& participant,
-                                                               const DaemonOptions& options);
+  [[nodiscard]] static Result<std::unique_ptr<RosBridge>> create(const wire::Participant& participant,
+                                                                 const DaemonOptions& options);
 
   /// A frame was processed: pose, odometry and transforms.
   void tell(const client::PoseUpdate& update);
@@ -20,7 +20,7 @@ class RosFace {
   void diagnose(const client::PoseUpdate& newest, const client::Stats& stats, bool silent);
 
  private:
-  RosFace(wire::RosPublisher publisher, const DaemonOptions& options);
+  RosBridge(wire::RosPublisher publisher, const DaemonOptions& options);
 
   const std::string id_;
   const bool odometry_is_ours_;

@@ -8,13 +8,13 @@ namespace liloc {
 
 /// The places within reach of some points, by cells of 0.08 m, or more where the points span more than a
 /// building. Immutable.
-class Vicinity {
+class VoxelMask {
  public:
-  Vicinity() = default;
+  VoxelMask() = default;
   /// The cells whose middle is in reach. Non-finite points are left out.
-  Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m);
+  VoxelMask(const std::vector<Eigen::Vector3f>& points, double reach_m);
   /// The same with a margin: misses no place in reach, errs towards yes by up to a cell's diagonal.
-  [[nodiscard]] static Vicinity covering(const std::vector<Eigen::Vector3f>& points, double reach_m);
+  [[nodiscard]] static VoxelMask covering(const std::vector<Eigen::Vector3f>& points, double reach_m);
 
   [[nodiscard]] bool empty() const { return cells_.empty(); }
   [[nodiscard]] bool at(const Eigen::Vector3f& p) const {
@@ -41,7 +41,7 @@ class Vicinity {
            static_cast<std::size_t>(cell.x());
   }
   enum class Margin { none, cell };
-  Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m, Margin margin);
+  VoxelMask(const std::vector<Eigen::Vector3f>& points, double reach_m, Margin margin);
   void stamp(const Eigen::Array3f& q_m, float reach_m);
 
   float inverse_ = 1;

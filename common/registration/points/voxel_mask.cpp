@@ -1,4 +1,4 @@
-#include "common/registration/points/vicinity.hpp"
+#include "common/registration/points/voxel_mask.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,14 +15,14 @@ constexpr float kRounding_m = 1e-3F;      // above what floats round indoors; by
 
 }  // namespace
 
-Vicinity::Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m)
-    : Vicinity(points, reach_m, Margin::none) {}
+VoxelMask::VoxelMask(const std::vector<Eigen::Vector3f>& points, double reach_m)
+    : VoxelMask(points, reach_m, Margin::none) {}
 
-Vicinity Vicinity::covering(const std::vector<Eigen::Vector3f>& points, double reach_m) {
+VoxelMask VoxelMask::covering(const std::vector<Eigen::Vector3f>& points, double reach_m) {
   return {points, reach_m, Margin::cell};
 }
 
-Vicinity::Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m, Margin margin) {
+VoxelMask::VoxelMask(const std::vector<Eigen::Vector3f>& points, double reach_m, Margin margin) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& p : points)
     if (p.allFinite()) box.extend(p);
@@ -42,7 +42,7 @@ Vicinity::Vicinity(const std::vector<Eigen::Vector3f>& points, double reach_m, M
 }
 
 /// A ball, row by row: the cells whose centres lie within reach.
-void Vicinity::stamp(const Eigen::Array3f& q_m, float reach_m) {
+void VoxelMask::stamp(const Eigen::Array3f& q_m, float reach_m) {
   const Eigen::Array3f q = q_m * inverse_ - 0.5F;  // in cells, of centres
   const float reach = reach_m * inverse_;
   const auto rows_of = [&](float middle, float half, int size) {

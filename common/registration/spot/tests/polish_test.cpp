@@ -1,4 +1,4 @@
-#include "common/registration/spot/settle.hpp"
+#include "common/registration/spot/polish.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,20 +20,20 @@ Pose random_motion(unsigned seed, double shift_m, double turn_rad) {
   return T;
 }
 
-class SettleLaw : public testing::TestWithParam<unsigned> {};
+class PolishLaw : public testing::TestWithParam<unsigned> {};
 
-TEST_P(SettleLaw, EndsAtTheDeviceAndNeverWorseThanRefiningAlone) {
+TEST_P(PolishLaw, EndsAtTheDeviceAndNeverWorseThanRefiningAlone) {
   const WatchedRoom w = watched_room(GetParam());
   const SpotProblem problem = w.problem();
   const Pose guess = w.T_map_device * random_motion(GetParam(), 0.3, radians(6));
   const Hypothesis refined = refine_and_judge(problem, guess);
-  const Hypothesis settled = settle(problem, guess, refined);
-  EXPECT_GE(settled.judgement.score, refined.judgement.score);
-  EXPECT_LT(distance_m(settled.T_map_sensor(), w.T_map_device), 0.05);
-  EXPECT_LT(angle_between_rad(settled.T_map_sensor(), w.T_map_device), radians(1.0));
+  const Hypothesis polished = polish(problem, guess, refined);
+  EXPECT_GE(polished.judgement.score, refined.judgement.score);
+  EXPECT_LT(distance_m(polished.T_map_sensor(), w.T_map_device), 0.05);
+  EXPECT_LT(angle_between_rad(polished.T_map_sensor(), w.T_map_device), radians(1.0));
 }
 
-TEST_P(SettleLaw, APoseThatNothingContradictsIsClean) {
+TEST_P(PolishLaw, APoseThatNothingContradictsIsClean) {
   const WatchedRoom w = watched_room(GetParam());
   Hypothesis h = refine_and_judge(w.problem(), w.T_map_device);
   EXPECT_GT(h.judgement.overlap(), 0.97);
@@ -46,7 +46,7 @@ TEST_P(SettleLaw, APoseThatNothingContradictsIsClean) {
 }
 
 /// Along a corridor nothing tells where the device is: what is held stays there, and is put right across.
-TEST_P(SettleLaw, WhatSurfacesDoNotHoldTheHoldDoes) {
+TEST_P(PolishLaw, WhatSurfacesDoNotHoldTheHoldDoes) {
   const scene::BoxRoom room = scene::corridor();
   const Camera camera = scene::small_camera();
   const Pose T_map_sensor = scene::looking({3.0, 1.0, 1.2}, radians(60) + 0.1 * GetParam(), radians(20));
@@ -64,7 +64,7 @@ TEST_P(SettleLaw, WhatSurfacesDoNotHoldTheHoldDoes) {
   EXPECT_LE(std::abs(T.translation().x() - guess.translation().x()), free_m + 0.001);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, SettleLaw, testing::Range(1U, 9U));
+INSTANTIATE_TEST_SUITE_P(Seeds, PolishLaw, testing::Range(1U, 9U));
 
 }  // namespace
 }  // namespace liloc

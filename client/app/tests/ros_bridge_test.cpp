@@ -1,4 +1,4 @@
-#include "client/app/ros_face.hpp"
+#include "client/app/ros_bridge.hpp"
 
 #include <gtest/gtest.h>
 

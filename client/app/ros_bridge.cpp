@@ -1,4 +1,4 @@
-#include "client/app/ros_face.hpp"
+#include "client/app/ros_bridge.hpp"
 
 #include <chrono>
 
@@ -11,12 +11,6 @@ Pose to_domain(const client::Pose& T) {
   pose.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
   pose.translation() = Eigen::Vector3d(T.translation_m.data());
   return pose;
-}
-
-StampNs wall_clock_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 }  // namespace
@@ -35,21 +29,21 @@ const char* name_of(client::State state) {
   return "unknown";
 }
 
-RosFace::RosFace(wire::RosPublisher publisher, const DaemonOptions& options)
+RosBridge::RosBridge(wire::RosPublisher publisher, const DaemonOptions& options)
     : id_(options.client.id),
       odometry_is_ours_(options.client.local != client::Local::external),
       ahead_ns_(from_ms(options.ros.tf_ahead_ms)),
       publisher_(std::move(publisher)),
       slew_(options.ros.tf_max_speed_m_s, radians(options.ros.tf_max_turn_deg_s)) {}
 
-Result<std::unique_ptr<RosFace>> RosFace::create(const wire::Participant& participant,
-                                                 const DaemonOptions& options) {
+Result<std::unique_ptr<RosBridge>> RosBridge::create(const wire::Participant& participant,
+                                                     const DaemonOptions& options) {
   auto publisher = wire::RosPublisher::create(participant, options.client.id, options.ros.names);
   if (!publisher) return tl::unexpected(publisher.error());
-  return std::unique_ptr<RosFace>(new RosFace(std::move(*publisher), options));
+  return std::unique_ptr<RosBridge>(new RosBridge(std::move(*publisher), options));
 }
 
-void RosFace::tell(const client::PoseUpdate& update) {
+void RosBridge::tell(const client::PoseUpdate& update) {
   const std::scoped_lock lock(mutex_);
   const Pose T_odom_sensor = to_domain(update.T_odom_sensor);
   Status told;
@@ -110,7 +104,7 @@ wire::Diagnosis diagnosis_of(const std::string& id, const client::PoseUpdate& ne
   return d;
 }
 
-void RosFace::diagnose(const client::PoseUpdate& newest, const client::Stats& stats, bool silent) {
+void RosBridge::diagnose(const client::PoseUpdate& newest, const client::Stats& stats, bool silent) {
   const Status told = publisher_.publish_diagnosis(wall_clock_ns(), diagnosis_of(id_, newest, stats, silent));
   if (!told) log::warning("{}: not published: {}", id_, told.error().message);
 }

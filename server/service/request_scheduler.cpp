@@ -1,4 +1,4 @@
-#include "server/service/desk.hpp"
+#include "server/service/request_scheduler.hpp"
 
 #include <exception>
 #include <utility>
@@ -16,20 +16,20 @@ bool is_newer(const wire::Arrival& a, const wire::Arrival& b) {
 
 }  // namespace
 
-Desk::Desk(ServiceOptions options, ServiceBackend backend, Answer answer)
+RequestScheduler::RequestScheduler(ServiceOptions options, ServiceBackend backend, Answer answer)
     : options_(std::move(options)),
       backend_(std::move(backend)),
       answer_(std::move(answer)),
       sessions_(options_.max_rate_hz),
-      line_(options_.queue) {
+      queue_(options_.queue) {
   for (int i = 0; i < options_.workers; ++i) workers_.emplace_back([this] { work(); });
 }
 
-Desk::~Desk() {
+RequestScheduler::~RequestScheduler() {
   stop();
 }
 
-void Desk::submit(wire::Arrival arrival) {
+void RequestScheduler::submit(wire::Arrival arrival) {
   bool stopping = false, begins = false, late = false, has_twin = false;
   {
     const std::scoped_lock lock(mutex_);
@@ -57,7 +57,7 @@ void Desk::submit(wire::Arrival arrival) {
     if (is_newer(*older, arrival)) std::swap(*older, arrival);  // they came in the wrong order
     refuse(*older, Reason::superseded, "a newer request took its place");
   }
-  if (options_.hold.count() > 0 && backend_.ready && !backend_.ready(arrival.request.match_stamp_ns())) {
+  if (must_wait(arrival)) {
     const std::scoped_lock lock(mutex_);
     if (!stopping_ && held_.size() < options_.queue) {
       held_.push_back(std::move(arrival));
@@ -67,22 +67,29 @@ void Desk::submit(wire::Arrival arrival) {
   enqueue(std::move(arrival));
 }
 
-std::optional<wire::Arrival> Desk::take_waiting(const std::string& client_id) {
+/// For the ceiling to be seen as of its stamp.
+bool RequestScheduler::must_wait(const wire::Arrival& arrival) const {
+  if (options_.hold.count() == 0 || !backend_.seen_until) return false;
+  const auto seen_ns = backend_.seen_until();
+  return seen_ns && arrival.request.match_stamp_ns() > *seen_ns;
+}
+
+std::optional<wire::Arrival> RequestScheduler::take_waiting(const std::string& client_id) {
   const std::scoped_lock lock(mutex_);
   const auto held = std::ranges::find_if(held_, [&](const auto& h) { return h.from.client_id == client_id; });
-  if (held == held_.end()) return line_.take(client_id);
+  if (held == held_.end()) return queue_.take(client_id);
   std::optional<wire::Arrival> taken(std::move(*held));
   held_.erase(held);
   return taken;
 }
 
-void Desk::enqueue(wire::Arrival arrival) {
+void RequestScheduler::enqueue(wire::Arrival arrival) {
   std::optional<wire::Arrival> displaced;
   bool stopping = false;
   {
     const std::scoped_lock lock(mutex_);
     stopping = stopping_;
-    displaced = stopping ? std::move(arrival) : line_.push(sessions_.waiting(std::move(arrival)));
+    displaced = stopping ? std::move(arrival) : queue_.push(sessions_.waiting(std::move(arrival)));
   }
   may_begin_.notify_one();
   if (!displaced) return;
@@ -92,13 +99,18 @@ void Desk::enqueue(wire::Arrival arrival) {
     refuse(*displaced, Reason::overloaded, fmt::format("{} requests are waiting", options_.queue));
 }
 
-void Desk::release() {
+void RequestScheduler::release() {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (held_.empty()) return;
+  }
+  const auto seen_ns = backend_.seen_until();  // it asks every LiDAR: once, and outside of the lock
   const auto now = std::chrono::steady_clock::now();
   std::vector<wire::Arrival> due;
   {
     const std::scoped_lock lock(mutex_);
     std::erase_if(held_, [&](wire::Arrival& held) {
-      if (now - held.at < options_.hold && !backend_.ready(held.request.match_stamp_ns())) return false;
+      if (seen_ns && held.request.match_stamp_ns() > *seen_ns && now - held.at < options_.hold) return false;
       due.push_back(std::move(held));
       return true;
     });
@@ -109,30 +121,30 @@ void Desk::release() {
   }
 }
 
-void Desk::tell(Stage stage, std::chrono::steady_clock::time_point since) const {
+void RequestScheduler::tell(Stage stage, std::chrono::steady_clock::time_point since) const {
   if (backend_.on_stage)
     backend_.on_stage(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
 }
 
-void Desk::work() {
+void RequestScheduler::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
     std::optional<Waiting> begun;
     may_begin_.wait(lock, [&] {
-      begun = line_.begin();
-      return begun || (stopping_ && line_.empty());
+      begun = queue_.begin();
+      return begun || (stopping_ && queue_.empty());
     });
     if (!begun) return;
     lock.unlock();
     const auto start = std::chrono::steady_clock::now();
     work_on(begun->arrival);
     lock.lock();
-    line_.end(*begun, std::chrono::steady_clock::now() - start);
+    queue_.end(*begun, std::chrono::steady_clock::now() - start);
     may_begin_.notify_all();
   }
 }
 
-void Desk::work_on(const wire::Arrival& arrival) {
+void RequestScheduler::work_on(const wire::Arrival& arrival) {
   SpotReply reply;
   tell(Stage::wait, arrival.at);
   const auto begun = std::chrono::steady_clock::now();
@@ -156,19 +168,19 @@ void Desk::work_on(const wire::Arrival& arrival) {
   finish(arrival, std::move(reply));
 }
 
-std::optional<std::uint64_t> Desk::may_say(SourceLimit& lines, const std::string& of) {
+std::optional<std::uint64_t> RequestScheduler::may_say(SourceLimit& lines, const std::string& of) {
   const std::scoped_lock lock(mutex_);
   return lines.pass(of, std::chrono::steady_clock::now());
 }
 
-void Desk::refuse(const wire::Arrival& arrival, Reason reason, std::string text) {
+void RequestScheduler::refuse(const wire::Arrival& arrival, Reason reason, std::string text) {
   if (const auto held = may_say(refusals_, fmt::format("{} {}", arrival.from.client_id, name_of(reason))))
     log::debug("request {} of {} refused: {}: {}{}", arrival.request.seq, arrival.from.client_id,
                name_of(reason), text, held_back(*held));
   finish(arrival, refusal(arrival.request, reason, std::move(text)));
 }
 
-void Desk::finish(const wire::Arrival& arrival, SpotReply reply) {
+void RequestScheduler::finish(const wire::Arrival& arrival, SpotReply reply) {
   reply.latency_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - arrival.at).count();
   reply.request_sent_ns = arrival.request.sent_ns;
@@ -183,7 +195,7 @@ void Desk::finish(const wire::Arrival& arrival, SpotReply reply) {
   answer_(arrival.from, std::move(reply));
 }
 
-void Desk::client_left(const std::string& client_id) {
+void RequestScheduler::client_left(const std::string& client_id) {
   {
     const std::scoped_lock lock(mutex_);
     sessions_.forget_client(client_id);
@@ -192,23 +204,23 @@ void Desk::client_left(const std::string& client_id) {
   if (backend_.forget) backend_.forget(client_id);
 }
 
-void Desk::publication_gone(std::uint64_t publication) {
+void RequestScheduler::publication_gone(std::uint64_t publication) {
   const std::scoped_lock lock(mutex_);
   sessions_.forget_publication(publication);
 }
 
-bool Desk::idle() const {
+bool RequestScheduler::idle() const {
   const std::scoped_lock lock(mutex_);
-  return line_.empty();
+  return queue_.empty();
 }
 
-void Desk::stop() {
+void RequestScheduler::stop() {
   std::vector<wire::Arrival> displaced;
   {
     const std::scoped_lock lock(mutex_);
     stopping_ = true;
     for (wire::Arrival& held : std::exchange(held_, {}))
-      if (auto least = line_.push(sessions_.waiting(std::move(held)))) displaced.push_back(std::move(*least));
+      if (auto least = queue_.push(sessions_.waiting(std::move(held)))) displaced.push_back(std::move(*least));
   }
   may_begin_.notify_all();
   for (const auto& arrival : displaced) refuse(arrival, Reason::shutting_down, "the server stops");
@@ -216,12 +228,12 @@ void Desk::stop() {
     if (worker.joinable()) worker.join();
 }
 
-ServiceCounters Desk::counters() const {
+ServiceCounters RequestScheduler::counters() const {
   const std::scoped_lock lock(mutex_);
   return {answered_,
           verified_,
           refused_,
-          static_cast<std::uint32_t>(held_.size() + line_.size()),
+          static_cast<std::uint32_t>(held_.size() + queue_.size()),
           sessions_.clients(SpotStatus::verified),
           sessions_.clients(SpotStatus::provisional),
           sessions_.clients(SpotStatus::refused)};

@@ -32,7 +32,7 @@ struct Waiting {
 /// else wants. Within each kind the one that was served longest ago comes first, which is the earliest
 /// deadline: all poses age alike. A client has at most one request in work: its answers build on each other,
 /// and a second worker would only wait for the first.
-class WaitingLine {
+class RequestQueue {
  public:
   using Duration = std::chrono::steady_clock::duration;
   static constexpr double kSearchShare = 0.25;
@@ -44,7 +44,7 @@ class WaitingLine {
   /// About what one takes: owed less, a search waits.
   static constexpr Duration kSearch = std::chrono::milliseconds(40);
 
-  explicit WaitingLine(std::size_t capacity) : capacity_(capacity) {}
+  explicit RequestQueue(std::size_t capacity) : capacity_(capacity) {}
 
   /// Where there was no room for one more it returns the one with the least claim, of those the oldest.
   [[nodiscard]] std::optional<wire::Arrival> push(Waiting waiting) {

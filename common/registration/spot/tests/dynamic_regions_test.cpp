@@ -6,7 +6,7 @@
 namespace liloc {
 namespace {
 
-class MoversLaw : public testing::TestWithParam<unsigned> {};
+class DynamicRegionsLaw : public testing::TestWithParam<unsigned> {};
 
 /// Somebody as a box, 1.2 m before the device.
 scene::Box person_before(const WatchedRoom& w) {
@@ -30,7 +30,7 @@ Cloud seen_moving(const scene::BoxRoom& before, const scene::BoxRoom& now) {
   return voxel_downsample(moving_map, 0.15);
 }
 
-TEST_P(MoversLaw, WhomTheCeilingSeesMoveTheDeviceMaySeeToo) {
+TEST_P(DynamicRegionsLaw, WhomTheCeilingSeesMoveTheDeviceMaySeeToo) {
   const WatchedRoom w = watched_room(GetParam());
   scene::BoxRoom now = w.room;
   now.furniture.push_back(person_before(w));
@@ -38,33 +38,34 @@ TEST_P(MoversLaw, WhomTheCeilingSeesMoveTheDeviceMaySeeToo) {
   Target target = w.target;
   const Judgement unaware = judge(target, query, query.medium, w.T_map_device, 0.05);
   ASSERT_GT(unaware.conflict, 0.02);
-  target.present = std::make_shared<const Present>(target.surfaces, target.views, seen_moving(w.room, now));
+  target.dynamic =
+      std::make_shared<const DynamicRegions>(target.surfaces, target.views, seen_moving(w.room, now));
   const Judgement aware = judge(target, query, query.medium, w.T_map_device, 0.05);
   EXPECT_LT(aware.conflict, 0.2 * unaware.conflict);
   EXPECT_EQ(aware.agree, unaware.agree) << "nobody is a surface of the room";
   EXPECT_LE(aware.map_conflict, unaware.map_conflict);
 }
 
-TEST_P(MoversLaw, WhatTheCeilingLooksThroughByNowIsStale) {
+TEST_P(DynamicRegionsLaw, WhatTheCeilingLooksThroughByNowIsStale) {
   const WatchedRoom w = watched_room(GetParam());
   scene::BoxRoom before = w.room;
   const scene::Box gone = person_before(w);
   before.furniture.push_back(gone);
   const Target was = watch(before, GetParam());
-  const Present present(was.surfaces, w.target.views, {});
+  const DynamicRegions regions(was.surfaces, w.target.views, {});
   int left = 0, stale = 0, elsewhere = 0;
   for (std::size_t i = 0; i < was->coarse.size(); ++i) {
     const Eigen::Vector3d p = was->coarse.points[i].cast<double>();
     const bool of_it = ((p - gone.low).array() > -0.08).all() && ((gone.high - p).array() > -0.08).all();
-    if (of_it && p.z() > 0.2) ++left, stale += present.stale[i];
-    if (!of_it) elsewhere += present.stale[i];
+    if (of_it && p.z() > 0.2) ++left, stale += regions.stale[i];
+    if (!of_it) elsewhere += regions.stale[i];
   }
   ASSERT_GT(left, 20);
   EXPECT_GT(stale, 0.7 * left);
   EXPECT_LT(elsewhere, 0.02 * static_cast<double>(was->coarse.size()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, MoversLaw, testing::Range(1U, 7U));
+INSTANTIATE_TEST_SUITE_P(Seeds, DynamicRegionsLaw, testing::Range(1U, 7U));
 
 }  // namespace
 }  // namespace liloc

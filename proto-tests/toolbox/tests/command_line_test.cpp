@@ -55,7 +55,7 @@ TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
     const Outcome outcome = liloc(given);
     expect_complaint(outcome, 2, says);
     EXPECT_THAT(outcome.out,
-                HasSubstr("commands are demo, load, replay, sim, align, calibrate, doctor; see liloc --help"));
+                HasSubstr("commands are demo, load, replay, sim, align, calibrate, convert, doctor; see liloc --help"));
   }
   expect_complaint(liloc("align a b --one --two"), 2, "not expected: '--one' '--two'");
   expect_complaint(liloc("align a b --voxel nan"), 2, "--voxel: is 'nan'; give a number in 0.005..1");

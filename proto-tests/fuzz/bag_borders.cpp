@@ -28,13 +28,6 @@ std::string info_seed() {
   return out.done();
 }
 
-std::string imu_seed() {
-  Cdr out;
-  out.header("imu");
-  for (int i = 0; i < 37; ++i) out.put(0.5);
-  return out.done();
-}
-
 std::string cloud_seed() {
   Cdr out;
   out.header("lidar").put(std::uint32_t{1}).put(std::uint32_t{2}).put(std::uint32_t{3});
@@ -110,7 +103,7 @@ std::vector<Border> bag_borders() {
        .seeds = {info_seed()},
        .read = [](const auto& bytes) { return status_of(bags::camera_info(bytes)); }},
       {.name = "ros-imu",
-       .seeds = {imu_seed()},
+       .seeds = {bags::written::imu({0.1, 0.2, 0.3}, {0.5, -0.5, 9.75})},
        .read = [](const auto& bytes) { return status_of(bags::imu(bytes)); }},
       {.name = "ros-points",
        .seeds = {cloud_seed()},

@@ -35,22 +35,24 @@ Result<bags::ConvertOptions> BagArguments::options() const {
 
 void add_bag_options(CLI::App& command, BagArguments& arguments) {
   auto* bag = command.add_option_group("bag");
-  bag->add_option("--lidar", arguments.lidars,
-                  "ID=TOPIC of a ceiling LiDAR's Image or PointCloud2; may be repeated");
-  bag->add_option("--imu", arguments.imus, "ID=TOPIC of a device's Imu; may be repeated");
-  bag->add_option("--truth", arguments.truths, "ID=FILE: a device's true poses, TUM; may be repeated");
-  bag->add_option("--device-file", arguments.device_files,
-                  "ID=device.json with a device's intrinsics, depth scale and T_imu_sensor; else from "
-                  "camera_info and tf of the bag, in millimetres");
+  const auto each = [&](const char* flag, std::vector<std::string>& values, const char* help) {
+    bag->add_option(flag, values, help)->allow_extra_args(false);
+  };
+  each("--lidar", arguments.lidars, "ID=TOPIC of a ceiling LiDAR's Image or PointCloud2; may be repeated");
+  each("--imu", arguments.imus, "ID=TOPIC of a device's Imu; may be repeated");
+  each("--truth", arguments.truths, "ID=FILE: a device's true poses, TUM; may be repeated");
+  each("--device-file", arguments.device_files,
+       "ID=device.json with a device's intrinsics, depth scale and T_imu_sensor; else from camera_info and tf "
+       "of "
+       "the bag, in millimetres");
   bag->add_option(
       "--site", arguments.site,
       "site.json with the LiDARs' intrinsics, depth scale and extrinsics; else from camera_info and "
       "tf of the bag, in millimetres");
   bag->add_option("--world", arguments.world, "The map's frame in tf")->capture_default_str();
   bag->add_option("--still-seconds", arguments.still_seconds,
-                  "The devices stand still for so long at the start")
-      ->check(command::in_range(0.0, 60.0))
-      ->capture_default_str();
+                  "The devices stand still for so long at the start; else as --device-file says, or 0")
+      ->check(command::in_range(0.0, 60.0));
 }
 
 }  // namespace liloc::toolbox

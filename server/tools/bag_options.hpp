@@ -1,6 +1,7 @@
 #pragma once
 // How topics of a bag are given on a command line.
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace liloc::toolbox {
 struct BagArguments {
   std::vector<std::string> lidars, devices, imus, truths, device_files;  ///< each ID=VALUE
   std::string site, world = "map";
-  double still_seconds = 0;
+  std::optional<double> still_seconds;
 
   [[nodiscard]] bool any() const {
     return !lidars.empty() || !imus.empty() || !truths.empty() || !device_files.empty() || !site.empty();

@@ -5,6 +5,7 @@
 #include "common/geometry/depth.hpp"
 #include "common/recording/bags/describe.hpp"
 #include "common/recording/bags/limits.hpp"
+#include "common/recording/new_folder.hpp"
 #include "common/recording/writer.hpp"
 
 namespace liloc::bags {
@@ -98,7 +99,7 @@ class Outline {
 };
 
 Result<Converted> convert(const fs::path& bag, const fs::path& out, const ConvertOptions& options) {
-  const auto survey = survey_bag(bag, topics_of(options));
+  const auto survey = survey_bag(bag, topics_of(options), options.stopped);
   if (!survey) return tl::unexpected(survey.error());
   const auto description = describe(bag, *survey, options);
   if (!description) return tl::unexpected(description.error());
@@ -106,6 +107,7 @@ Result<Converted> convert(const fs::path& bag, const fs::path& out, const Conver
   if (const Status written = outline.write(*description); !written) return tl::unexpected(written.error());
   const Status read = read_bag(bag, [&](const Message& message) -> Status {
     Status done;
+    if (options.stopped && options.stopped()) return fail("{}: stopped by a signal", bag.string());
     if (const auto stream = outline.streams.find(message.topic); stream != outline.streams.end())
       done = write_frame(message, stream->second);
     else if (const auto imu = outline.samples.find(message.topic); imu != outline.samples.end())
@@ -126,20 +128,13 @@ Result<Converted> convert(const fs::path& bag, const fs::path& out, const Conver
 }  // namespace
 
 Result<Converted> convert_bag(const fs::path& bag, const fs::path& out, const ConvertOptions& options) {
+  if (const auto files = files_of_bag(bag); !files) return tl::unexpected(files.error());
   if (const Status fine = check(options); !fine) return tl::unexpected(fine.error());
-  std::error_code error;
-  const fs::path name = out.lexically_normal(), folder = name.has_filename() ? name : name.parent_path();
-  const bool there = fs::exists(out, error);
-  if (there && (!fs::is_directory(out, error) || !fs::is_empty(out, error)))
-    return fail("{}: is there already; name a new folder", out.string());
-  const fs::path part = folder.parent_path() / ("." + folder.filename().string() + ".part");
-  fs::remove_all(part, error);
-  auto converted = convert(bag, part, options);
-  if (converted && there) fs::remove(folder, error);
-  if (converted) fs::rename(part, folder, error);
-  if (converted && error)
-    converted = fail("{}: cannot be made ({}); name another", out.string(), error.message());
-  if (!converted) fs::remove_all(part, error);
+  auto folder = NewFolder::beside(out);
+  if (!folder) return tl::unexpected(folder.error());
+  auto converted = convert(bag, folder->path(), options);
+  if (!converted) return converted;
+  if (const Status kept = folder->keep(); !kept) return tl::unexpected(kept.error());
   return converted;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 // A ROS 2 bag as a recording of the layout.
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "common/base/result.hpp"
@@ -14,12 +16,13 @@ struct ConvertOptions {
   std::map<std::string, std::string> devices;           ///< device -> topic of its depth Image
   std::map<std::string, std::string> imus;              ///< device -> topic of its Imu
   std::map<std::string, std::filesystem::path> truths;  ///< device -> TUM file of T_map_sensor
-  /// Device -> device.json with intrinsics, depth scale and T_imu_sensor; else from CameraInfo and transforms.
+  /// Device -> device.json with intrinsics, depth scale, T_imu_sensor; else from CameraInfo and transforms.
   std::map<std::string, std::filesystem::path> device_files;
   /// The LiDARs' intrinsics, depth scale and extrinsics; empty: from their CameraInfo and the bag's transforms.
   std::filesystem::path site_file;
   std::string world_frame = "map";
-  double still_seconds = 0;  ///< devices stand still for so long at the start
+  std::optional<double> still_seconds;  ///< at the start; empty: as the device's file says, else 0
+  std::function<bool()> stopped = {};   ///< asked at each message; true ends it as an error
 };
 
 struct Converted {

@@ -91,7 +91,7 @@ Result<DeviceInfo> device_of(const std::string& bag, const Survey& survey, const
   if (!info) return info;
   info->id = id;
   info->rate_hz = depth->rate_hz();
-  info->still_seconds = options.still_seconds;
+  info->still_seconds = options.still_seconds.value_or(info->still_seconds);
   info->imu_rate_hz.reset();
   const auto name = options.imus.find(id);
   if (name == options.imus.end()) return info;

@@ -50,12 +50,14 @@ double TopicSurvey::rate_hz() const {
   return seconds > 0 ? std::clamp(static_cast<double>(messages - 1) / seconds, 0.1, 1000.0) : 1.0;
 }
 
-Result<Survey> survey_bag(const std::filesystem::path& bag, const std::vector<std::string>& wanted) {
+Result<Survey> survey_bag(const std::filesystem::path& bag, const std::vector<std::string>& wanted,
+                          const std::function<bool()>& stopped) {
   Survey survey;
   std::vector<std::string> cameras;  // of other topics nobody asks
   for (const std::string& topic : wanted)
     cameras.push_back(topic.substr(0, topic.rfind('/') + 1) + "camera_info");
   const auto note = [&](const Message& message) -> Status {
+    if (stopped && stopped()) return fail("{}: stopped by a signal", bag.string());
     auto known = survey.topics.find(message.topic);
     if (known == survey.topics.end() && survey.topics.size() >= kMostTopics)
       return fail("{}: has over {} topics; is it the right file?", bag.string(), kMostTopics);

@@ -27,9 +27,11 @@ struct Survey {
   Frames frames;
 };
 
-/// Reads the whole bag. Frames' stamps are those of the topics in `wanted`.
+/// Reads the whole bag. Frames' stamps are those of the topics in `wanted`. Error: also when `stopped`, asked
+/// at each message, says so.
 [[nodiscard]] Result<Survey> survey_bag(const std::filesystem::path& bag,
-                                        const std::vector<std::string>& wanted);
+                                        const std::vector<std::string>& wanted,
+                                        const std::function<bool()>& stopped = {});
 
 /// The intrinsics of the images on a topic.
 [[nodiscard]] Result<Camera> camera_of(const Survey& survey, const std::string& topic);

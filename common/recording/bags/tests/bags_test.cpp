@@ -79,6 +79,41 @@ TEST_P(Bag, BecomesTheRecordingThatItHolds) {
 INSTANTIATE_TEST_SUITE_P(Kinds, Bag,
                          testing::Values("db3", "db3-big", "mcap", "mcap-zstd", "mcap-lz4", "mcap-zstd-big"));
 
+/// independent.mcap is by Foxglove's writers (write_fixture.mjs): zstd chunks, attachment, metadata, index,
+/// summary.
+TEST(BagFiles, OneOfAnIndependentWriterIsRead) {
+  const TemporaryFolder folder;
+  ConvertOptions options = all_sensors();
+  options.lidars.erase("ceiling1");
+  const auto converted = convert_bag(LILOC_INDEPENDENT_BAG, folder.path() / "rec", options);
+  ASSERT_TRUE(converted) << converted.error().message;
+  const auto recording = open_recording(folder.path() / "rec");
+  ASSERT_TRUE(recording) << recording.error().message;
+  const LidarRecording& lidar = recording->lidars.at(0);
+  EXPECT_TRUE(lidar.info.T_map_sensor.translation().isApprox(Eigen::Vector3d(11, 2, 3)));
+  ASSERT_EQ(lidar.depth.size(), 3U);
+  EXPECT_EQ(read_depth(lidar.depth[2], lidar.info.camera)->at(5, 4), 2002);
+  const DeviceRecording& device = recording->devices.at(0);
+  EXPECT_EQ(device.depth.size(), 3U);
+  EXPECT_EQ(device.info.camera.fy, 6.5);
+  EXPECT_TRUE(device.info.T_imu_sensor->translation().isApprox(Eigen::Vector3d(0.1, 0, 0)));
+  ASSERT_EQ(device.imu.size(), 15U);
+  EXPECT_EQ(device.imu[7].stamp_ns, kStart_ns + 140'000'000);
+  EXPECT_EQ(device.imu[7].specific_force_m_s2, Eigen::Vector3d(0.5, -0.5, 9.75));
+}
+
+TEST(BagFiles, AStopLeavesNothing) {
+  const TemporaryFolder folder;
+  ConvertOptions options = all_sensors();
+  options.lidars.erase("ceiling1");
+  int asked = 0;
+  options.stopped = [&] { return ++asked > 40; };  // of 28 messages: while the frames are written
+  const auto converted = convert_bag(LILOC_INDEPENDENT_BAG, folder.path() / "rec", options);
+  ASSERT_FALSE(converted);
+  EXPECT_THAT(converted.error().message, HasSubstr("stopped by a signal"));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
 TEST(BagFiles, AFolderOfThemIsABagToo) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "bag");
@@ -182,6 +217,7 @@ TEST(BagFiles, FilesTellWhatTheBagDoesNot) {
   const DeviceRecording& device = recording->devices[0];
   EXPECT_EQ(device.info.id, "robot");
   EXPECT_EQ(device.info.camera.depth_scale_m, 0.0005);
+  EXPECT_EQ(device.info.still_seconds, 9);
   EXPECT_NEAR(device.info.rate_hz, 10, 1e-6);
   EXPECT_TRUE(device.info.T_imu_sensor->isApprox(Pose::Identity()));
   EXPECT_EQ(read_depth(device.depth[0], camera)->at(0, 0), 3000) << "1.5 m";

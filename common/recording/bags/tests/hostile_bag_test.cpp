@@ -82,13 +82,11 @@ TEST_F(HostileBag, WhatIsNotWantedIsPassedOver) {
   EXPECT_EQ(messages_, 1U);
 }
 
-TEST_F(HostileBag, AViewThatNeverEndsIsNotAsked) {
-  EXPECT_THAT(
-      error_of_sql("CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);"
-                   "INSERT INTO topics VALUES(1, '/a', 't', 'cdr');"
-                   "CREATE VIEW messages AS WITH RECURSIVE n(id) AS (SELECT 1 UNION ALL SELECT id + 1 FROM n) "
-                   "SELECT id, 1 AS topic_id, '' AS data FROM n;"),
-      HasSubstr("view \"messages\" prohibited"));
+TEST_F(HostileBag, AViewWhichMayNeverEndIsNotAsked) {
+  EXPECT_THAT(error_of_sql("CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);"
+                           "INSERT INTO topics VALUES(1, '/a', 't', 'cdr');"
+                           "CREATE VIEW messages AS SELECT 1 AS id, 1 AS topic_id, '' AS data;"),
+              HasSubstr("view \"messages\" prohibited"));
 }
 
 TEST_F(HostileBag, ADatabaseOfAnythingElseIsNamed) {

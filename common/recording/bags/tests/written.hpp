@@ -1,5 +1,6 @@
 #pragma once
 // MCAP and CDR byte by byte, for bags that no writer makes.
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -32,15 +33,15 @@ inline std::string chunk(std::string_view compression, const std::string& packed
                        packed);
 }
 
-/// Schema 1 and channel 1 of that topic and type.
-inline std::string channel(std::string_view topic, std::string_view type) {
-  const std::string one = number(std::uint16_t{1});
-  return record(3, one + text(type) + text("ros2msg") + text("")) +
-         record(4, one + one + text(topic) + text("cdr") + text(""));
+/// A schema and a channel of the same number.
+inline std::string channel(std::string_view topic, std::string_view type, std::uint16_t id = 1) {
+  const std::string same = number(id);
+  return record(3, same + text(type) + text("ros2msg") + text("")) +
+         record(4, same + same + text(topic) + text("cdr") + text(""));
 }
 
-inline std::string message(const std::string& cdr) {
-  return record(5, number(std::uint16_t{1}) + std::string(20, '\0') + cdr);
+inline std::string message(const std::string& cdr, std::uint16_t channel = 1) {
+  return record(5, number(channel) + std::string(20, '\0') + cdr);
 }
 
 inline std::string mcap(const std::string& records) {
@@ -63,7 +64,12 @@ class Cdr {
     bytes_ += std::string(value) + '\0';
     return *this;
   }
-  Cdr& header(std::string_view frame) { return put(std::int32_t{1}).put(std::uint32_t{5}).text(frame); }
+  Cdr& header(std::string_view frame, std::int64_t stamp_ns = 0) {
+    constexpr std::int64_t kNsInSecond = 1'000'000'000;
+    return put(static_cast<std::int32_t>(stamp_ns / kNsInSecond))
+        .put(static_cast<std::uint32_t>(stamp_ns % kNsInSecond))
+        .text(frame);
+  }
   Cdr& blob(const std::string& value) {
     put(static_cast<std::uint32_t>(value.size()));
     bytes_ += value;
@@ -76,10 +82,10 @@ class Cdr {
 };
 
 inline std::string image(std::string_view encoding, std::uint32_t width, std::uint32_t height,
-                         const std::string& data) {
+                         const std::string& data, std::int64_t stamp_ns = 0) {
   const std::uint32_t step = width * (encoding == "32FC1" ? 4 : 2);
   return Cdr()
-      .header("camera")
+      .header("camera", stamp_ns)
       .put(height)
       .put(width)
       .text(encoding)
@@ -87,6 +93,22 @@ inline std::string image(std::string_view encoding, std::uint32_t width, std::ui
       .put(step)
       .blob(data)
       .done();
+}
+
+/// An Imu of angular velocity and specific force.
+inline std::string imu(const std::array<double, 3>& w, const std::array<double, 3>& a,
+                       std::int64_t stamp_ns = 0) {
+  Cdr out;
+  const auto put = [&](const auto& values) {
+    for (const double value : values) out.put(value);
+  };
+  out.header("imu", stamp_ns);
+  put(std::array<double, 13>{0, 0, 0, 1});  // orientation, its covariance
+  put(w);
+  put(std::array<double, 9>{});
+  put(a);
+  put(std::array<double, 9>{});
+  return out.done();
 }
 
 }  // namespace liloc::bags::written

@@ -71,6 +71,8 @@ void add_replay(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--device", options->devices,
                       "Replay this device alone; of a bag ID=TOPIC; may be repeated");
+  command->add_option("--save-answers", options->save_answers,
+                      "DIR[:refused|wrong|all]: keep answers for liloc explain; the newest 200, 512 MiB");
   command->add_option("--codec", options->codec, "How clouds travel: draco, voxel or octree")
       ->capture_default_str();
   command->add_flag("--cold", options->cold, "Answer each request on its own: no prior, no history");

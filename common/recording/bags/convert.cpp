@@ -58,8 +58,8 @@ Status take_sample(std::string_view cdr, std::vector<ImuSample>& samples) {
 Status write_sorted(Samples& samples) {
   std::vector<ImuSample>& all = samples.all;
   std::ranges::stable_sort(all, {}, &ImuSample::stamp_ns);
-  const auto twins = std::ranges::unique(all, {}, &ImuSample::stamp_ns);
-  all.erase(twins.begin(), twins.end());
+  const auto same = [](const ImuSample& x, const ImuSample& y) { return x.stamp_ns == y.stamp_ns; };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
   return write_imu(samples.file, all);
 }
 

@@ -59,13 +59,15 @@ bool is_tum_folder(const fs::path& folder) {
   return fs::exists(folder / "depth.txt", error) && !fs::exists(folder / "site.json", error);
 }
 
-Result<std::size_t> tum_to_device(const fs::path& tum, const fs::path& out, DeviceInfo device) {
+Result<std::size_t> tum_to_device(const fs::path& tum, const fs::path& out, DeviceInfo device,
+                                  const std::function<bool()>& stopped) {
   const auto frames = list_frames(tum);
   if (!frames) return tl::unexpected(frames.error());
   device.camera.depth_scale_m = kTumDepthScale_m;
   device.rate_hz = rate_hz(*frames);
   const fs::path folder = out / "devices" / device.id;
   for (const DepthFile& frame : *frames) {
+    if (stopped && stopped()) return fail("{}: stopped by a signal", tum.string());
     const auto image = read_depth(frame, device.camera);
     if (!image) return tl::unexpected(image.error());
     if (const Status written = write_depth(folder / "depth", *image); !written)
@@ -83,9 +85,10 @@ Result<std::size_t> tum_to_device(const fs::path& tum, const fs::path& out, Devi
   return frames->size();
 }
 
-Status device_to_tum(const DeviceRecording& device, const fs::path& out) {
+Status device_to_tum(const DeviceRecording& device, const fs::path& out, const std::function<bool()>& stopped) {
   std::string table = "# depth maps, 5000 units a metre\n# timestamp filename\n";
   for (const DepthFile& frame : device.depth) {
+    if (stopped && stopped()) return fail("{}: stopped by a signal", out.string());
     auto image = read_depth(frame, device.info.camera);
     if (!image) return tl::unexpected(image.error());
     rescale(*image, device.info.camera.depth_scale_m / kTumDepthScale_m);

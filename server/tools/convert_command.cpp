@@ -19,7 +19,9 @@ struct ConvertArguments {
   BagArguments bag;
 };
 
-Status convert_bag(const ConvertArguments& arguments, const std::function<bool()>& stopped) {
+using Stopped = std::function<bool()>;
+
+Status convert_bag(const ConvertArguments& arguments, const Stopped& stopped) {
   auto options = arguments.bag.options();
   if (!options) return tl::unexpected(options.error());
   options->stopped = stopped;
@@ -47,12 +49,12 @@ Result<DeviceInfo> device_of_tum(const ConvertArguments& arguments) {
   return device;
 }
 
-Status convert_tum(const ConvertArguments& arguments) {
+Status convert_tum(const ConvertArguments& arguments, const Stopped& stopped) {
   auto device = device_of_tum(arguments);
   if (!device) return tl::unexpected(device.error());
   auto folder = NewFolder::beside(arguments.out);
   if (!folder) return tl::unexpected(folder.error());
-  const auto frames = tum_to_device(arguments.in, folder->path(), std::move(*device));
+  const auto frames = tum_to_device(arguments.in, folder->path(), std::move(*device), stopped);
   if (!frames) return tl::unexpected(frames.error());
   if (Status kept = folder->keep(); !kept) return kept;
   fmt::print("{}: {} frames; to replay it, add a site.json and its ceiling's global/\n",
@@ -60,28 +62,31 @@ Status convert_tum(const ConvertArguments& arguments) {
   return {};
 }
 
-Status convert_to_tum(const ConvertArguments& arguments) {
+Status convert_to_tum(const ConvertArguments& arguments, const Stopped& stopped) {
   const auto recording = open_recording(arguments.in);
   if (!recording) return tl::unexpected(recording.error());
   if (recording->devices.empty()) return fail("{}: has no device, which TUM sequences are of", arguments.in);
   auto folder = NewFolder::beside(arguments.out);
   if (!folder) return tl::unexpected(folder.error());
   for (const DeviceRecording& device : recording->devices) {
-    if (Status written = device_to_tum(device, folder->path() / device.info.id); !written) return written;
+    if (Status written = device_to_tum(device, folder->path() / device.info.id, stopped); !written)
+      return written;
     fmt::print("{}: {} frames\n", device.info.id, device.depth.size());
   }
   return folder->keep();
 }
 
-Status convert(const ConvertArguments& arguments) {
-  if (arguments.to == "tum") return convert_to_tum(arguments);
-  if (is_tum_folder(arguments.in)) return convert_tum(arguments);
-  const StopSignals signals;
-  return convert_bag(arguments, [&] { return signals.within(std::chrono::milliseconds(0)) != 0; });
+Status convert(const ConvertArguments& arguments, const Stopped& stopped) {
+  if (arguments.to == "tum") return convert_to_tum(arguments, stopped);
+  return is_tum_folder(arguments.in) ? convert_tum(arguments, stopped) : convert_bag(arguments, stopped);
 }
 
 int run(const ConvertArguments& arguments) {
-  if (const Status done = convert(arguments); !done) return complain(done.error(), kBadUsage);
+  const StopSignals signals;
+  bool stopped = false;
+  const Status done = convert(
+      arguments, [&] { return stopped = stopped || signals.within(std::chrono::milliseconds(0)) != 0; });
+  if (!done) return complain(done.error(), stopped ? kFailed : kBadUsage);
   fmt::print("written to {}\n", arguments.out);
   return kDone;
 }

@@ -75,6 +75,17 @@ TEST_F(TumFolder, WhatIsWrongIsNamed) {
   EXPECT_THAT(error_of("1 depth/8bit.png\n"), HasSubstr("no sound PNG"));
 }
 
+TEST_F(TumFolder, AStopEndsIt) {
+  const DeviceRecording device = recorded();
+  ASSERT_TRUE(device_to_tum(device, folder_.path() / "tum"));
+  const auto stopped = [] { return true; };
+  EXPECT_THAT(
+      tum_to_device(folder_.path() / "tum", folder_.path() / "rec", device.info, stopped).error().message,
+      HasSubstr("stopped by a signal"));
+  EXPECT_THAT(device_to_tum(device, folder_.path() / "tum2", stopped).error().message,
+              HasSubstr("stopped by a signal"));
+}
+
 TEST_F(TumFolder, ANewFolderAppearsWholeOrNotAtAll) {
   const fs::path target = folder_.path() / "new/";
   {

@@ -8,6 +8,7 @@
 
 #include "common/base/result.hpp"
 #include "common/base/stamp.hpp"
+#include "common/geometry/camera.hpp"
 
 namespace liloc {
 
@@ -54,5 +55,9 @@ constexpr std::int64_t kNsInSecond = 1'000'000'000;
 [[nodiscard]] bool parse_seconds(std::string_view cell, StampNs& stamp_ns);
 /// The reverse, with nine decimals.
 [[nodiscard]] std::string seconds_text(StampNs stamp_ns);
+
+constexpr std::string_view kImuHead = "#timestamp_ns,wx_rad_s,wy_rad_s,wz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n";
+/// One line of imu.csv.
+[[nodiscard]] std::string imu_row(const ImuSample& sample);
 
 }  // namespace liloc

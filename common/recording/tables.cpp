@@ -49,12 +49,8 @@ Result<std::vector<StampedPose>> read_tum(const std::filesystem::path& file) {
 }
 
 Status write_imu(const std::filesystem::path& file, const std::vector<ImuSample>& samples) {
-  std::string text = "#timestamp_ns,wx_rad_s,wy_rad_s,wz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n";
-  for (const auto& s : samples) {
-    const auto &w = s.angular_velocity_rad_s, &a = s.specific_force_m_s2;
-    fmt::format_to(std::back_inserter(text), "{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", s.stamp_ns,
-                   w.x(), w.y(), w.z(), a.x(), a.y(), a.z());
-  }
+  std::string text(kImuHead);
+  for (const auto& sample : samples) text += imu_row(sample);
   return write_file(file, text);
 }
 

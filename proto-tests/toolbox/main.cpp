@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
   liloc::toolbox::add_convert(app, exit_code);
   liloc::toolbox::add_doctor(app, exit_code);
   liloc::toolbox::add_explain(app, exit_code);
+  liloc::toolbox::add_record(app, exit_code);
   if (const std::string wrong = wrong_command(app, argc > 1 ? argv[1] : ""); !wrong.empty())
     return liloc::toolbox::complain({wrong}, liloc::toolbox::kBadUsage);
   try {

@@ -41,7 +41,7 @@ class CommandLine : public testing::Test {
 
 TEST_F(CommandLine, EverySubcommandHasHelp) {
   for (const char* name :
-       {"", "demo ", "load ", "replay ", "sim ", "align ", "calibrate ", "convert ", "doctor ", "explain "}) {
+       {"", "demo ", "load ", "replay ", "sim ", "align ", "calibrate ", "convert ", "doctor ", "explain ", "record "}) {
     const Outcome outcome = liloc(std::string(name) + "--help");
     EXPECT_EQ(outcome.exit_code, 0) << name;
     EXPECT_THAT(outcome.out, HasSubstr("Usage"));
@@ -57,7 +57,7 @@ TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
     expect_complaint(outcome, 2, says);
     EXPECT_THAT(
         outcome.out,
-        HasSubstr("commands are demo, load, replay, sim, align, calibrate, convert, doctor, explain; see liloc --help"));
+        HasSubstr("commands are demo, load, replay, sim, align, calibrate, convert, doctor, explain, record; see liloc --help"));
   }
   expect_complaint(liloc("align a b --one --two"), 2, "not expected: '--one' '--two'");
   expect_complaint(liloc("align a b --voxel nan"), 2, "--voxel: is 'nan'; give a number in 0.005..1");

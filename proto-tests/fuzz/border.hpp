@@ -25,6 +25,7 @@ struct Border {
 [[nodiscard]] std::vector<Border> cloud_code_borders();
 [[nodiscard]] std::vector<Border> message_borders();
 [[nodiscard]] std::vector<Border> recording_borders();
+[[nodiscard]] std::vector<Border> bag_borders();
 [[nodiscard]] std::vector<Border> setting_borders();
 [[nodiscard]] std::vector<Border> cloud_file_borders();
 

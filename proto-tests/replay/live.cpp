@@ -26,7 +26,8 @@ FleetCommand fleet_command(const Recording& recording, const ReplayOptions& opti
                             "--risk",     fmt::format("{}", options.risk)};
   fleet.server_arguments.insert(fleet.server_arguments.end(),
                                 {"--state", "none"});  // nothing from earlier replays
-  for (const auto& [name, value] : {std::pair{"--verify", options.verify}, std::pair{"--icp", options.icp}})
+  for (const auto& [name, value] : {std::pair{"--verify", options.verify}, std::pair{"--icp", options.icp},
+                                    std::pair{"--save-answers", options.save_answers}})
     if (!value.empty()) fleet.server_arguments.insert(fleet.server_arguments.end(), {name, value});
   for (const DeviceRecording& device : recording.devices) {
     ClientCommand client{

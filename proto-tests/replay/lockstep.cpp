@@ -10,6 +10,7 @@
 #include "client/engine/trace.hpp"
 #include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/processes.hpp"
+#include "proto-tests/replay/saved_answers.hpp"
 #include "proto-tests/replay/timeline.hpp"
 #include "server/localization/localizer.hpp"
 
@@ -64,10 +65,14 @@ class Lockstep {
   Lockstep(const Recording& recording, const ReplayOptions& options)
       : recording_(recording),
         cloud_(recording.site, global_cloud_options_for(localizer_options(options))),
-        localizer_(cloud_, localizer_options(options)),
+        localizer_(cloud_, localizer_options(options), {},
+                   options.save_answers.empty() ? AnswerSink() : AnswerSink([this](const Answered& answered) {
+                     saved_.take(answered);
+                   })),
         newest_ceiling_ns_(recording.lidars.size(), std::numeric_limits<StampNs>::min()) {}
 
   Status open(const ReplayOptions& options) {
+    if (auto opened = saved_.open(options.save_answers, recording_); !opened) return opened;
     for (const DeviceRecording& device : recording_.devices) {
       devices_.push_back(std::make_unique<Device>(engine_options(device, options)));
       if (auto status = devices_.back()->trace.open(trace_folder(options, device.info.id)); !status)
@@ -93,6 +98,7 @@ class Lockstep {
 
   Status close() {
     answer_due(std::numeric_limits<StampNs>::max());
+    if (auto status = saved_.status(); !status) return status;
     for (std::size_t i = 0; i < devices_.size(); ++i) {
       facts.client_cpu_s[recording_.devices[i].info.id] = devices_[i]->cpu_s;
       if (auto status = devices_[i]->trace.close(); !status) return status;
@@ -168,6 +174,7 @@ class Lockstep {
 
   const Recording& recording_;
   GlobalCloud cloud_;
+  SavedAnswers saved_;
   Localizer localizer_;
   std::vector<std::unique_ptr<Device>> devices_;  ///< in the order of the recording
   std::vector<StampNs> newest_ceiling_ns_;        ///< per LiDAR

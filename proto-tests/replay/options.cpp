@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "client/engine/engine.hpp"
+#include "server/answers/store.hpp"
 #include "server/localization/localizer.hpp"
 
 namespace liloc::replay {
@@ -37,6 +38,13 @@ Result<ReplayOptions> ReplayOptions::validated() const {
   if (features == "learned")
     return fail("--features: learned needs a trained model, and this version has none; use --features fpfh");
   if (features != "fpfh") return fail("--features: '{}' is unknown; use fpfh", features);
+  if (!save_answers.empty()) {
+    const auto store = answers::store_options_from(save_answers);
+    if (!store) return fail("--{}", store.error().message);
+    if (store->which == answers::Which::wrong && !lockstep)
+      return fail(
+          "--save-answers: the server cannot know which answers are wrong; add --lockstep, or give DIR:all");
+  }
   if (out.empty()) return fail("--out: missing; name the folder for the results");
   return *this;
 }

@@ -27,6 +27,7 @@ struct ReplayOptions {
   int threads = 1;                   ///< of the server, per request
   std::string codec = "draco";       ///< of the clouds that devices send
   double searching_interval_ms = 0;  ///< lower bound while nothing is verified; 0: a quarter of interval_ms
+  std::string save_answers;          ///< DIR[:refused|wrong|all]; empty: none are kept
   std::filesystem::path programs;    ///< folder of liloc-server and liloc-client; used without lockstep
 
   /// Errors name the option, its value and what it may be.

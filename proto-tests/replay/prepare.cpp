@@ -45,7 +45,11 @@ Status check_device(const DeviceRecording& device, const ReplayOptions& options)
   if (options.local != "cloud" && (device.imu.empty() || !device.info.T_imu_sensor))
     return fail("{}: --local {} needs imu.csv and T_imu_sensor in device.json; use --local cloud",
                 device.folder.string(), options.local);
-  if (const auto truth = Truth::of(device); !truth) return tl::unexpected(truth.error());
+  const auto truth = Truth::of(device);
+  if (!truth) return tl::unexpected(truth.error());
+  if (truth->empty() && options.save_answers.ends_with(":wrong"))
+    return fail("{}: --save-answers of wrong ones needs groundtruth.tum; give DIR:refused or DIR:all",
+                device.folder.string());
   return {};
 }
 

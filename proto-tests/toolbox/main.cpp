@@ -26,7 +26,7 @@ std::string wrong_command(const CLI::App& app, const std::string& first) {
 int run(int argc, char** argv) {
   CLI::App app(
       "LiLoc's toolbox: live demo, recordings replayed and judged, simulated sites, clouds aligned, LiDARs "
-      "calibrated, ills found",
+      "calibrated, bags converted, answers explained, ills found",
       "liloc");
   app.set_version_flag("--version", LILOC_VERSION);
   app.require_subcommand(0, 1);
@@ -37,7 +37,10 @@ int run(int argc, char** argv) {
   liloc::toolbox::add_sim(app, exit_code);
   liloc::toolbox::add_align(app, exit_code);
   liloc::toolbox::add_calibrate(app, exit_code);
+  liloc::toolbox::add_convert(app, exit_code);
   liloc::toolbox::add_doctor(app, exit_code);
+  liloc::toolbox::add_explain(app, exit_code);
+  liloc::toolbox::add_record(app, exit_code);
   if (const std::string wrong = wrong_command(app, argc > 1 ? argv[1] : ""); !wrong.empty())
     return liloc::toolbox::complain({wrong}, liloc::toolbox::kBadUsage);
   try {

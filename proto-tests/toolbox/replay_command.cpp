@@ -6,12 +6,22 @@
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/replay/replay.hpp"
 #include "proto-tests/toolbox/commands.hpp"
+#include "proto-tests/toolbox/converted_bag.hpp"
 
 namespace liloc::toolbox {
 namespace {
 
-int run(const replay::ReplayOptions& options) {
+struct ReplayArguments {
+  replay::ReplayOptions options;
+  BagArguments bag;
+};
+
+int run(ReplayArguments arguments) {
   replay::catch_stop_signals();
+  ConvertedBag bag;
+  if (const Status taken = bag.take(arguments.options, arguments.bag); !taken)
+    return complain(taken.error(), kBadUsage);
+  const replay::ReplayOptions& options = arguments.options;
   ProgressBar bar(options.lockstep ? "replaying" : "replaying at recorded speed");
   auto report = replay::replay(options, [&](double share) { bar.show(share); });
   if (!report) return complain(report.error().error, report.error().bad_input ? kBadUsage : kFailed);
@@ -24,11 +34,15 @@ int run(const replay::ReplayOptions& options) {
 }  // namespace
 
 void add_replay(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<replay::ReplayOptions>();
+  auto arguments = std::make_shared<ReplayArguments>();
+  replay::ReplayOptions* options = &arguments->options;
   options->programs = replay::program_folder();
   CLI::App* command = app.add_subcommand(
       "replay", "Locate the devices of a recording, and judge the answers by its ground truth");
-  command->add_option("REC", options->recording, "Folder of the recording")->required();
+  command
+      ->add_option("REC", options->recording,
+                   "Folder of the recording, or a bag: its topics as for liloc convert")
+      ->required();
   command->add_option("--out", options->out, "Folder for the traces and report.json")->required();
   command->add_flag("--lockstep", options->lockstep, "One process, no DDS, deterministic, as fast as it can");
   command->add_option("--seed", options->seed, "Of all randomness")
@@ -55,7 +69,10 @@ void add_replay(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--sampling", options->sampling, "Share of feature points that RANSAC uses")
       ->capture_default_str();
-  command->add_option("--device", options->devices, "Replay this device alone; may be repeated");
+  command->add_option("--device", options->devices,
+                      "Replay this device alone; of a bag ID=TOPIC; may be repeated");
+  command->add_option("--save-answers", options->save_answers,
+                      "DIR[:refused|wrong|all]: keep answers for liloc explain; the newest 200, 512 MiB");
   command->add_option("--codec", options->codec, "How clouds travel: draco, voxel or octree")
       ->capture_default_str();
   command->add_flag("--cold", options->cold, "Answer each request on its own: no prior, no history");
@@ -68,7 +85,8 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_flag_callback(
       "--no-submap", [options] { options->submap = false; },
       "Requests carry a frame alone, without what was seen before");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  add_bag_options(*command, arguments->bag);
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace liloc::toolbox

@@ -13,7 +13,8 @@ namespace {
 using command::in_range;
 
 struct Raw {
-  std::string method = "liloc", verify, icp, state, log_level = "info", log_format = "text", metrics;
+  std::string method = "liloc", verify, icp, state, save_answers, log_level = "info", log_format = "text",
+              metrics;
   int hold_ms = 100;
   bool standby = false;
 };
@@ -96,6 +97,9 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       ->check(in_range(0, 1000))
       ->capture_default_str();
 
+  app.add_option(
+      "--save-answers", raw.save_answers,
+      "DIR[:refused|all]: keep what was not verified, or all, for liloc explain; the newest 200, 512 MiB");
   app.add_option("--log-level", raw.log_level, "debug, info, warning or error")
       ->check(command::one_of({"debug", "info", "warning", "error"}))
       ->capture_default_str();
@@ -141,6 +145,14 @@ Status take(const CLI::App& app, const Raw& raw, ServerOptions& options) {
   }
   settle_standby(app, raw, options);
   if (const auto set = set_variants(raw, options.localizer); !set) return fail("--{}", set.error().message);
+  if (!raw.save_answers.empty()) {
+    auto store = answers::store_options_from(raw.save_answers);
+    if (!store) return fail("--{}", store.error().message);
+    if (store->which == answers::Which::wrong)
+      return fail(
+          "--save-answers: only liloc replay knows which answers are wrong; give DIR:refused or DIR:all");
+    options.save_answers = std::move(*store);
+  }
   options.service.hold = std::chrono::milliseconds(raw.hold_ms);
   options.localizer.server_id = options.service.server_id;
   if (const auto valid = options.service.validated(); !valid) return tl::unexpected(valid.error());

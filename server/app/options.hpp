@@ -5,6 +5,7 @@
 
 #include "common/base/log.hpp"
 #include "common/wire/participant.hpp"
+#include "server/answers/store.hpp"
 #include "server/localization/localizer.hpp"
 #include "server/service/service_options.hpp"
 #include "server/web/web_server.hpp"
@@ -18,6 +19,7 @@ struct ServerOptions {
   wire::DomainOptions seat;
   LocalizerOptions localizer{.search_limit = std::chrono::seconds(2)};
   ServiceOptions service;
+  std::optional<answers::StoreOptions> save_answers;
   log::Level log_level = log::Level::info;
   bool log_json = false;                ///< a JSON object a line, in place of text
   std::optional<web::Address> metrics;  ///< where metrics and health are told; empty: nowhere

@@ -60,8 +60,10 @@ Server::Server(const ServerOptions& options, Site site)
       state_(options.state_file.empty()
                  ? SiteState{}
                  : open_site_state(options.state_file, global_cloud_.site(), voxel_size_m_)),
-      localizer_(global_cloud_, with_idle(options.localizer, [this] { return service_->idle(); }),
-                 state_.learned) {
+      localizer_(
+          global_cloud_, with_idle(options.localizer, [this] { return service_->idle(); }), state_.learned,
+          options.save_answers ? AnswerSink([this](Answered answered) { keeper_->keep(std::move(answered)); })
+                               : AnswerSink()) {
   saved_ = localizer_.learned();
   global_cloud_.set_known_noise(state_.noise);
   saved_noise_ = state_.noise;
@@ -73,6 +75,11 @@ Server::~Server() {
 
 Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site site) {
   std::unique_ptr<Server> server(new Server(options, std::move(site)));
+  if (options.save_answers) {
+    auto store = answers::AnswerStore::open(*options.save_answers);
+    if (!store) return fail("--{}", store.error().message);
+    server->keeper_ = std::make_unique<answers::AnswerKeeper>(std::move(*store));
+  }
   if (auto opened = server->open(options); !opened) return tl::unexpected(opened.error());
   server->dispatcher_->start();
   if (options.metrics)
@@ -207,6 +214,7 @@ void Server::stop() {
   preparer_.request_stop();
   if (preparer_.joinable()) preparer_.join();
   if (service_) service_->stop();
+  if (keeper_) keeper_->stop();
   if (dispatcher_) dispatcher_->stop();
   save_learned();
 }

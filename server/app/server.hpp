@@ -47,7 +47,8 @@ class Server {
   GlobalCloud global_cloud_;
   const SiteState state_;  ///< as it was at the start
   Localizer localizer_;
-  std::optional<wire::Participant> participant_;  // all below live on it
+  std::unique_ptr<answers::AnswerKeeper> keeper_;  ///< null: answers are not kept; holds moments of the room
+  std::optional<wire::Participant> participant_;   // all below live on it
   std::unique_ptr<wire::StatusPublisher> status_publisher_;
   std::unique_ptr<Ingest> ingest_;
   std::unique_ptr<Service> service_;

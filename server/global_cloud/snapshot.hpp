@@ -33,6 +33,7 @@ class LidarSurfaces {
   [[nodiscard]] const Cloud& cloud_map() const;
   [[nodiscard]] SightView view() const;
   [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
+  [[nodiscard]] const DepthImage& image() const { return image_; }
 
  private:
   const DepthImage image_;
@@ -53,6 +54,9 @@ class LidarFrame {
   [[nodiscard]] StampNs stamp_ns() const { return still_.stamp_ns; }
   [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
   [[nodiscard]] const std::shared_ptr<const LidarSurfaces>& surfaces() const { return surfaces_; }
+  /// The images it was made of.
+  [[nodiscard]] const DepthImage& still() const { return still_; }
+  [[nodiscard]] const DepthImage& moving() const { return moving_; }
   [[nodiscard]] const SightView& view() const;
   /// What moves in this frame, thinned.
   [[nodiscard]] const Cloud& moving_map() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace liloc {
 namespace {
@@ -89,13 +90,21 @@ LookTerms terms_of(const Judgement& judgement, bool fits) {
           std::max(0.0, conflict - kMuchConflict), fits ? 0.0 : 1.0};
 }
 
-double log_odds_of(const std::vector<PlaceEvidence>& places, const ConfidenceModel& model) {
-  double against =
-      std::exp(-clutter_of(places.front(), model.clutter)) + std::exp(-twin_of(places, model.twin));
+double Risks::sum() const {
+  return std::accumulate(rivals.begin(), rivals.end(), clutter + twin);
+}
+
+Risks risks_of(const std::vector<PlaceEvidence>& places, const ConfidenceModel& model) {
+  Risks risks{std::exp(-clutter_of(places.front(), model.clutter)), std::exp(-twin_of(places, model.twin)), {}};
   for (std::size_t i = 1; i < places.size(); ++i)
-    if (places[i].bits >= kRival * places.front().bits)
-      against += std::exp(-rather_than(places.front(), places[i], model.rival));
-  return -std::log(against);
+    risks.rivals.push_back(places[i].bits >= kRival * places.front().bits
+                               ? std::exp(-rather_than(places.front(), places[i], model.rival))
+                               : 0.0);
+  return risks;
+}
+
+double log_odds_of(const std::vector<PlaceEvidence>& places, const ConfidenceModel& model) {
+  return -std::log(risks_of(places, model).sum());
 }
 
 double standing_of(const PlaceEvidence& place) {

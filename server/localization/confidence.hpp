@@ -44,6 +44,16 @@ struct ConfidenceModel {
 };
 [[nodiscard]] const ConfidenceModel& fitted_confidence();
 
+/// What speaks against the first of some places, each as odds against it; their sum is the odds that it is
+/// wrong.
+struct Risks {
+  double clutter = 0, twin = 0;
+  std::vector<double> rivals;  ///< one per other place; 0 for one that is no rival
+  [[nodiscard]] double sum() const;
+};
+/// Precondition: not empty.
+[[nodiscard]] Risks risks_of(const std::vector<PlaceEvidence>& places,
+                             const ConfidenceModel& model = fitted_confidence());
 /// Logarithm of the odds that the first of `places` is within 10 degrees and 0.3 m of the truth; the others are
 /// its rivals. Precondition: not empty.
 [[nodiscard]] double log_odds_of(const std::vector<PlaceEvidence>& places,

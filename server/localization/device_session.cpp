@@ -73,14 +73,15 @@ void DeviceSession::refuse(const Found& found, SpotReply* reply) {
 }
 
 Evidence DeviceSession::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                               SpotReply* reply) {
+                               bool spare_time, SpotReply* reply) {
   if (request.cold) return answer_cold(spot, reply);
-  if (!segment_ || request.odom_segment != segment_->id) segment_.emplace(request.odom_segment, verify_.tracks);
+  if (!segment_ || request.odom_segment != segment_->id)
+    segment_.emplace(Segment{request.odom_segment, Tracks(verify_.tracks)});
   if (options_.verify_or_default() != Verify::tracks) {
     answer_as_paper(spot, reply);
     return {};
   }
-  if (segment_->followed) return answer_following(request, spot, reply);
+  if (segment_->followed) return answer_following(request, spot, spare_time, reply);
   return answer_searching(spot, reply);
 }
 
@@ -223,14 +224,13 @@ DeviceSession::Found DeviceSession::search_beside(const std::shared_ptr<const Sp
 }
 
 /// What a pose in doubt needs at once can wait for spare time where nothing speaks against the pose.
-bool DeviceSession::due_for_search() const {
+bool DeviceSession::due_for_search(bool spare_time) const {
   const int spots = segment_->spots_since_search;
-  return spots >= verify_.research_latest ||
-         (spots >= verify_.research_every && (!options_.idle || options_.idle()));
+  return spots >= verify_.research_latest || (spots >= verify_.research_every && spare_time);
 }
 
 Evidence DeviceSession::answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                                         SpotReply* reply) {
+                                         bool spare_time, SpotReply* reply) {
   const Hypothesis here = follow(request, *spot);
   report_followed(here, reply);
   int& weak_in_a_row = segment_->weak_in_a_row;
@@ -238,7 +238,7 @@ Evidence DeviceSession::answer_following(const SpotRequest& request, const std::
   if (weak_in_a_row == 1) segment_->tracks.clear();  // what odometry tied to the place before may be lost
   std::optional<Found> found;
   ++segment_->spots_since_search;
-  if (due_for_search() || weak_in_a_row >= 2) found = search_beside(spot, here, reply);
+  if (due_for_search(spare_time) || weak_in_a_row >= 2) found = search_beside(spot, here, reply);
   if (!reply->verified()) {
     const bool searched = found && found->outcome != Found::Outcome::cut_off;
     advise(searched ? advice_for(found->evidence, here.judgement)

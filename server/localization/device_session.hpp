@@ -12,24 +12,32 @@ namespace liloc {
 /// One client's session. `mutex` is held by whoever answers one of its requests.
 class DeviceSession {
  public:
-  explicit DeviceSession(const LocalizerOptions& options) : options_(options) { verify_.risk = options.risk; }
+  /// What belongs to one segment of the device's odometry.
+  struct Segment {
+    std::uint32_t id = 0;
+    Tracks tracks = Tracks();
+    std::deque<SpotPose> own_answers = {};  ///< the last three spots' own best poses
+    std::optional<Followed> followed = {};  ///< once verified
+    int weak_in_a_row = 0, spots_since_search = 0;
+  };
+
+  /// `segment`: what an earlier session remembered.
+  explicit DeviceSession(const LocalizerOptions& options, std::optional<Segment> segment = std::nullopt)
+      : options_(options), segment_(std::move(segment)) {
+    verify_.risk = options.risk;
+  }
 
   std::mutex mutex;
 
-  /// Fills status, reason, advice, pose and confidence of the reply. Returns what the search of the room rested
-  /// on; no places where this spot needed none.
-  Evidence answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, SpotReply* reply);
+  /// Fills status, reason, advice, pose and confidence of the reply. `spare_time`: there is time for a search
+  /// that nobody waits for. Returns what the search of the room rested on; no places where this spot needed
+  /// none.
+  Evidence answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, bool spare_time,
+                  SpotReply* reply);
+  /// What it remembers; the next answer rests on it.
+  [[nodiscard]] const std::optional<Segment>& segment() const { return segment_; }
 
  private:
-  /// What belongs to one segment of the device's odometry.
-  struct Segment {
-    Segment(std::uint32_t of, const TrackOptions& options) : id(of), tracks(options) {}
-    std::uint32_t id;
-    Tracks tracks;
-    std::deque<SpotPose> own_answers;  ///< the last three spots' own best poses
-    std::optional<Followed> followed;  ///< once verified
-    int weak_in_a_row = 0, spots_since_search = 0;
-  };
   /// What a search of the room came to.
   struct Found {
     enum class Outcome { place, nothing_fits, cut_off } outcome = Outcome::nothing_fits;
@@ -46,14 +54,14 @@ class DeviceSession {
   Evidence answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   Evidence answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   Evidence answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                            SpotReply* reply);
+                            bool spare_time, SpotReply* reply);
   void answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   static void refuse(const Found& found, SpotReply* reply);
   Found search_room(const std::shared_ptr<const Spot>& spot, Tracks* tracks,
                     const Hypothesis* followed = nullptr);
   Hypothesis follow(const SpotRequest& request, const Spot& spot);
   Found search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here, SpotReply* reply);
-  [[nodiscard]] bool due_for_search() const;
+  [[nodiscard]] bool due_for_search(bool spare_time) const;
   void report_followed(const Hypothesis& here, SpotReply* reply) const;
   [[nodiscard]] bool enough(double confidence) const { return confidence >= least_confidence(verify_.risk); }
 

@@ -1,9 +1,5 @@
 #include "server/localization/localizer.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -11,28 +7,14 @@
 
 #include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
-#include "server/localization/device_session.hpp"
-#include "server/localization/spot_solver.hpp"
+#include "server/localization/answered.hpp"
 
 namespace liloc {
-namespace {
-
-constexpr double kGravityOff_rad = radians(5.0);  // by hand
-
-/// A verified pose shows whether what the device takes for gravity is right.
-void note_gravity(const SpotRequest& request, const Snapshot& snapshot, SpotReply* reply) {
-  if (!reply->verified() || !request.up_sensor) return;
-  const Eigen::Vector3d up_map = reply->T_map_sensor->linear() * *request.up_sensor;
-  const double off_rad = std::acos(std::clamp(up_map.dot(snapshot.room()->up_map()), -1.0, 1.0));
-  if (off_rad > kGravityOff_rad)
-    reply->text += fmt::format("; the device's gravity is off by {:.0f} deg and was dropped", degrees(off_rad));
-}
-
-}  // namespace
 
 struct Localizer::Impl {
   GlobalCloud& global_cloud;
   const LocalizerOptions options;
+  const AnswerSink sink;
   std::shared_ptr<const CellBounds> learned;
   mutable std::mutex mutex;
   std::map<std::string, std::shared_ptr<DeviceSession>> sessions;
@@ -61,14 +43,19 @@ struct Localizer::Impl {
     const std::scoped_lock in_turn(held->mutex);
     const auto room = snapshot(request.match_stamp_ns());
     if (!room) return refusal(request, Reason::no_gpc, room.error().message);
-    const auto spot = Spot::create(request, *room, options, bounds());
-    if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);
-    SpotReply reply = refusal(request, Reason::none, "");
-    reply.gpc_stamp_ns = (*spot)->gpc_stamp_ns();
-    held->answer(request, *spot, &reply);
-    note_gravity(request, **room, &reply);
-    if (!(*spot)->trouble().empty()) note_trouble(request.client_id, **spot, &reply);
-    learn(**spot, reply);
+    const auto known = bounds();
+    const bool spare_time = !options.idle || options.idle();
+    std::optional<Answered> kept;
+    if (sink) kept = Answered{options, request, *room, known, held->segment(), spare_time, {}};
+    const auto spot = Spot::create(request, *room, options, known);
+    SpotReply reply = spot ? answer_of(*held, *spot, spare_time).reply
+                           : refusal(request, Reason::bad_cloud, spot.error().message);
+    if (spot) note_trouble(request.client_id, **spot);
+    if (spot) learn(**spot, reply);
+    if (kept) {
+      kept->reply = reply;
+      sink(std::move(*kept));
+    }
     return reply;
   }
 
@@ -78,8 +65,8 @@ struct Localizer::Impl {
   }
 
   /// The client is told each time, the log once.
-  void note_trouble(const std::string& client_id, const Spot& spot, SpotReply* reply) {
-    reply->text += "; " + spot.trouble();
+  void note_trouble(const std::string& client_id, const Spot& spot) {
+    if (spot.trouble().empty()) return;
     const std::scoped_lock lock(mutex);
     if (troubled.contains(client_id)) return;
     const auto held = troubles.pass(client_id, std::chrono::steady_clock::now());
@@ -107,9 +94,10 @@ struct Localizer::Impl {
   }
 };
 
-Localizer::Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBounds learned)
+Localizer::Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBounds learned, AnswerSink sink)
     : impl_(new Impl{global_cloud,
                      std::move(options),
+                     std::move(sink),
                      std::make_shared<const CellBounds>(std::move(learned)),
                      {},
                      {},

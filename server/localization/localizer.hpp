@@ -53,11 +53,16 @@ struct LocalizerOptions {
 /// The global cloud that a localizer of these options works on: the paper's was raw, people included.
 [[nodiscard]] GlobalCloudOptions global_cloud_options_for(const LocalizerOptions& options);
 
+struct Answered;
+/// Takes an answer with all that it rests on. Called by the thread that calls `locate`, before it returns.
+using AnswerSink = std::function<void(Answered)>;
+
 /// Thread-safe: workers call `locate` side by side; requests of one client are answered in turn.
 class Localizer {
  public:
-  /// `learned`: the bounds that an earlier run left.
-  Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBounds learned = {});
+  /// `learned`: the bounds that an earlier run left. `sink`, unless empty, is given each answer that met a
+  /// room.
+  Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBounds learned = {}, AnswerSink sink = {});
   ~Localizer();
   Localizer(const Localizer&) = delete;
   Localizer& operator=(const Localizer&) = delete;

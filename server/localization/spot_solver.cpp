@@ -72,6 +72,7 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
   const auto cloud = decode(request.lpc);
   if (!cloud) return tl::unexpected(cloud.error());
   auto spot = std::make_shared<Spot>();
+  spot->request_ = request;
   spot->snapshot_ = std::move(snapshot);
   spot->gpc_stamp_ns_ = spot->snapshot_->stamp_near(request.match_stamp_ns());
   spot->bounds_ = std::move(bounds);

@@ -22,6 +22,9 @@ class Spot {
                                                     std::shared_ptr<const CellBounds> bounds = nullptr);
 
   [[nodiscard]] const SpotProblem& problem() const { return *problem_; }
+  /// What it was made of.
+  [[nodiscard]] const SpotRequest& request() const { return request_; }
+  [[nodiscard]] const std::shared_ptr<const Snapshot>& snapshot() const { return snapshot_; }
   [[nodiscard]] const Query& query() const { return query_; }
   [[nodiscard]] StampNs gpc_stamp_ns() const { return gpc_stamp_ns_; }
   [[nodiscard]] const Pose& T_odom_sensor() const { return T_odom_sensor_; }
@@ -35,6 +38,7 @@ class Spot {
   [[nodiscard]] bool plausible(const Hypothesis& hypothesis) const;
 
  private:
+  SpotRequest request_;
   std::shared_ptr<const CellBounds> bounds_;
   std::string trouble_;
   std::shared_ptr<const Snapshot> snapshot_;

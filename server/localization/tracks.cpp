@@ -129,12 +129,24 @@ void Tracks::forget_one() {
   for (Track& track : tracks_) track.looks.erase(track.looks.begin() + out);
 }
 
-void Tracks::add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypothesis>& found) {
-  spots_.push_back(spot);
-  if (spots_.size() > options_.memory) forget_one();
+Tracks::Tracks(TrackOptions options, Memory memory)
+    : options_(options),
+      spots_(std::move(memory.spots)),
+      searches_(std::move(memory.searches)),
+      tracks_(std::move(memory.tracks)) {
+  weigh();
+}
+
+void Tracks::weigh() {
   std::vector<Pose> T_odom_sensors;
   for (const auto& known : spots_) T_odom_sensors.push_back(known->T_odom_sensor());
   weights_ = weights_of(T_odom_sensors, options_.view);
+}
+
+void Tracks::add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypothesis>& found) {
+  spots_.push_back(spot);
+  if (spots_.size() > options_.memory) forget_one();
+  weigh();
   searches_.push_back({spot->T_odom_sensor(), found.front().T_map_sensor()});
   if (searches_.size() > options_.searches) searches_.pop_front();
   std::vector<bool> taken(found.size(), false);

@@ -50,7 +50,19 @@ struct TrackOptions {
 /// forgotten first. Not thread-safe.
 class Tracks {
  public:
+  /// A search's own answer.
+  struct Searched {
+    Pose T_odom_sensor, T_map_sensor;
+  };
+  /// All that it remembers.
+  struct Memory {
+    std::deque<std::shared_ptr<const Spot>> spots;
+    std::deque<Searched> searches;
+    std::vector<Track> tracks;  ///< best first; each has a look per spot
+  };
+
   explicit Tracks(TrackOptions options = {}) : options_(options) {}
+  Tracks(TrackOptions options, Memory memory);
 
   /// `found` are the spot's own hypotheses, best first; at least one.
   void add(const std::shared_ptr<const Spot>& spot, const std::vector<Hypothesis>& found);
@@ -60,16 +72,14 @@ class Tracks {
   [[nodiscard]] std::size_t searches() const { return searches_.size(); }
   /// What speaks for each track, best first; the best one's deviation is `sd_m`.
   [[nodiscard]] std::vector<PlaceEvidence> evidence(double sd_m) const;
+  [[nodiscard]] Memory memory() const { return {spots_, searches_, tracks_}; }
 
  private:
-  /// A search's own answer.
-  struct Searched {
-    Pose T_odom_sensor, T_map_sensor;
-  };
   void extend(Track* track, const Spot& spot, const std::vector<Hypothesis>& found,
               std::vector<bool>* taken) const;
   [[nodiscard]] Track founded(const Hypothesis& hypothesis) const;
   [[nodiscard]] PlaceEvidence evidence_of(const Track& track) const;
+  void weigh();
   void forget_one();
   void prune();
 

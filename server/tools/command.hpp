@@ -34,6 +34,9 @@ class ProgressBar {
 /// Each adds its subcommand to `app`; when it is chosen it runs and sets `exit_code`.
 void add_align(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
+void add_convert(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
+void add_explain(CLI::App& app, int& exit_code);
+void add_record(CLI::App& app, int& exit_code);
 
 }  // namespace liloc::toolbox

@@ -2,6 +2,7 @@
 // Which surfaces of the room a device's cloud shows at a pose, and how much each tells of where that is.
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 
 #include "common/registration/target/target.hpp"
 
@@ -11,6 +12,11 @@ namespace liloc {
 /// still learns nothing new.
 class SurfaceBits {
  public:
+  using Worth = std::unordered_map<std::uint64_t, float>;  ///< of each cell
+  SurfaceBits() = default;
+  /// As `worth` and `sum` told them.
+  SurfaceBits(Worth worth, double sum) : worth_(std::move(worth)), sum_(sum) {}
+
   /// Adds what the query's thinned cloud shows at a pose: of its points that lie on a surface that faces their
   /// way, the rarest one in each cell. A surface is worth the more the rarer such ones are at that height
   /// (`ScoreField`): 1 for the rarest, next to nothing for floor.
@@ -19,9 +25,10 @@ class SurfaceBits {
   /// Sum over the cells.
   [[nodiscard]] double sum() const { return sum_; }
   [[nodiscard]] std::size_t cells() const { return worth_.size(); }
+  [[nodiscard]] const Worth& worth() const { return worth_; }
 
  private:
-  std::unordered_map<std::uint64_t, float> worth_;  ///< of each cell
+  Worth worth_;
   double sum_ = 0;
 };
 

@@ -167,6 +167,14 @@ TEST_F(BadInput, LearnedFeaturesAreRefused) {
   options_.features = "learned";
   expect_refused({"--features", "fpfh"});
 }
+TEST_F(BadInput, WrongAnswersNeedTheTruth) {
+  options_.save_answers = "kept:wrong";
+  options_.lockstep = true;
+  fs::remove(device_ / "groundtruth.tum");
+  expect_refused({"groundtruth.tum", "DIR:all"});
+  options_.lockstep = false;
+  expect_refused({"--save-answers", "--lockstep"});
+}
 TEST_F(BadInput, OptionsOutOfRange) {
   options_.voxel_m = 0;
   expect_refused({"--voxel"});

@@ -4,11 +4,13 @@
 #include <fstream>
 
 #include "common/recording/files.hpp"
+#include "common/recording/writer.hpp"
 #include "proto-tests/replay/csv.hpp"
 #include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/replay.hpp"
 #include "proto-tests/replay/tests/temp_folder.hpp"
 #include "proto-tests/sim/write_recording.hpp"
+#include "server/answers/explanation.hpp"
 
 namespace liloc::replay {
 namespace {
@@ -99,6 +101,47 @@ TEST_F(Lockstep, TheSameSeedGivesTheSameAnswersBitByBit) {
   }
   for (const char* name : {"spots.csv", "local.csv"})
     EXPECT_EQ(without_latency(first / name), without_latency(second / name)) << name;
+}
+
+TEST_F(Lockstep, SavedAnswersAreGivenAgainToTheDigit) {
+  ReplayOptions saving = options("saving");
+  const fs::path kept = folder_->path() / "kept";
+  saving.save_answers = kept.string() + ":all";
+  const auto report = replay(saving);
+  ASSERT_TRUE(report) << report.error().error.message;
+  std::size_t answers = 0;
+  for (const auto& entry : fs::directory_iterator(kept)) {
+    const auto saved = answers::read_answer(entry.path());
+    ASSERT_TRUE(saved) << saved.error().message;
+    EXPECT_THAT(answers::explain(*saved).differences, testing::IsEmpty()) << entry.path();
+    ++answers;
+  }
+  EXPECT_EQ(answers, report->devices[0].spots.n);
+  ASSERT_TRUE(replay(options("not_saving")));
+  EXPECT_EQ(without_latency(saving.out / "device0/spots.csv"),
+            without_latency(options("not_saving").out / "device0/spots.csv"))
+      << "saving changes no answer";
+}
+
+TEST_F(Lockstep, WrongAnswersAreThoseThatTheTruthContradicts) {
+  const fs::path moved = folder_->path() / "moved_truth";
+  fs::copy(folder_->path() / "rec", moved, fs::copy_options::recursive);
+  const auto device = open_recording(moved)->devices[0];
+  auto truth = *read_ground_truth(device);
+  for (StampedPose& pose : truth) pose.T_map_sensor.translation().x() += 1;
+  ASSERT_TRUE(write_tum(device.folder / "groundtruth.tum", truth));
+  ReplayOptions saving = options("wrong");
+  const fs::path kept = folder_->path() / "kept_wrong";
+  saving.save_answers = kept.string() + ":wrong";
+  const auto right = replay(saving);
+  ASSERT_TRUE(right) << right.error().error.message;
+  EXPECT_TRUE(fs::is_empty(kept));
+  saving.recording = moved;
+  const auto report = replay(saving);
+  ASSERT_TRUE(report) << report.error().error.message;
+  const auto files = std::distance(fs::directory_iterator(kept), fs::directory_iterator());
+  EXPECT_GT(files, 0);
+  EXPECT_EQ(static_cast<std::size_t>(files), report->devices[0].spots.verified_wrong);
 }
 
 TEST_F(Lockstep, EveryFrameAndEveryRequestHasARow) {

@@ -172,6 +172,8 @@ TEST(Program, FlagsAreRefusedByTheirName) {
   for (const auto& [arguments, says] : std::initializer_list<std::pair<const char*, const char*>>{
            {"", "--site is required; see liloc-server --help"},
            {"--site s --voxel nan", "--voxel: is 'nan'"},
+           {"--site s --save-answers out:wrong", "--save-answers: only liloc replay knows"},
+           {"--site s --save-answers :all", "--save-answers: no folder is named"},
            {"--site s --max-rate nan", "--max-rate"},
            {"--site s --status-every nan", "--status-every"},
            {"--site s --interface ''", "--interface"},

@@ -9,8 +9,10 @@
 #include <thread>
 
 #include "common/codec/codec.hpp"
+#include "common/recording/tests/temporary_folder.hpp"
 #include "common/wire/client_link.hpp"
 #include "common/wire/sensor_publishers.hpp"
+#include "server/answers/answer_file.hpp"
 
 namespace liloc {
 namespace {
@@ -45,6 +47,8 @@ TEST(Server, AnswersAClientAndTellsItsStatus) {
   ServerOptions options;
   options.seat = {.domain = 161, .role = wire::Role::server};
   options.service.server_id = options.localizer.server_id = "edge1";
+  const TemporaryFolder folder;
+  options.save_answers = answers::StoreOptions{folder.path()};
   const auto server = Server::start(options, small_site());
   ASSERT_TRUE(server) << server.error().message;
 
@@ -94,6 +98,10 @@ TEST(Server, AnswersAClientAndTellsItsStatus) {
   EXPECT_EQ(status->lidars[0].frames, 1U);
   dispatcher->stop();
   (*server)->stop();
+  const auto saved = answers::read_answer(folder.path() / "00000000001000000000-robot1-1.answer");
+  ASSERT_TRUE(saved) << saved.error().message;
+  EXPECT_EQ(saved->answered.reply.reason, reply->reason);
+  EXPECT_EQ(saved->answered.reply.T_map_sensor.has_value(), reply->T_map_sensor.has_value());
 }
 
 TEST(Server, TwoOfFourClocksAheadDoNotCarryTheCeilingAway) {

@@ -1,0 +1,38 @@
+#pragma once
+// A ROS 2 bag as a recording of the layout.
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/base/result.hpp"
+
+namespace liloc::bags {
+
+/// Which topic is whose; ids as in the layout.
+struct ConvertOptions {
+  std::map<std::string, std::string> lidars;            ///< ceiling LiDAR -> topic of its Image or PointCloud2
+  std::map<std::string, std::string> devices;           ///< device -> topic of its depth Image
+  std::map<std::string, std::string> imus;              ///< device -> topic of its Imu
+  std::map<std::string, std::filesystem::path> truths;  ///< device -> TUM file of T_map_sensor
+  /// Device -> device.json with intrinsics, depth scale, T_imu_sensor; else from CameraInfo and transforms.
+  std::map<std::string, std::filesystem::path> device_files;
+  /// The LiDARs' intrinsics, depth scale and extrinsics; empty: from their CameraInfo and the bag's transforms.
+  std::filesystem::path site_file;
+  std::string world_frame = "map";
+  std::optional<double> still_seconds;  ///< at the start; empty: as the device's file says, else 0
+  std::function<bool()> stopped = {};   ///< asked at each message; true ends it as an error
+};
+
+struct Converted {
+  std::map<std::string, std::size_t> messages;  ///< frames and samples per topic that was asked for
+};
+
+/// Reads the bag twice: first what describes it, then the frames. `out` must be absent or an empty folder; when
+/// anything is wrong it is left as it was. Intrinsics of a topic x/image come from x/camera_info. Errors: one
+/// line that names file, topic and remedy.
+[[nodiscard]] Result<Converted> convert_bag(const std::filesystem::path& bag, const std::filesystem::path& out,
+                                            const ConvertOptions& options);
+
+}  // namespace liloc::bags

@@ -1,0 +1,35 @@
+#pragma once
+// The ROS 2 messages of depth, intrinsics, motion and frames, from CDR to plain values. Pure; nothing in the
+// bytes is trusted. Every error is one line without the topic's name, which the caller knows.
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/geometry/camera.hpp"
+#include "common/geometry/cloud.hpp"
+
+namespace liloc::bags {
+
+template <class T>
+struct Framed {
+  StampNs stamp_ns = 0;
+  std::string frame_id;
+  T value;
+};
+struct Transform {
+  std::string parent, child;
+  Pose T_parent_child = Pose::Identity();
+};
+
+/// sensor_msgs/msg/Image: 16UC1 and mono16 as they are, 32FC1 (metres) in units of `depth_scale_m`.
+[[nodiscard]] Result<Framed<DepthImage>> depth_image(std::string_view cdr, double depth_scale_m);
+/// sensor_msgs/msg/CameraInfo: K; the image is taken for rectified, its depth for millimetres, as ROS has it.
+[[nodiscard]] Result<Framed<Camera>> camera_info(std::string_view cdr);
+/// sensor_msgs/msg/Imu.
+[[nodiscard]] Result<Framed<ImuSample>> imu(std::string_view cdr);
+/// sensor_msgs/msg/PointCloud2 with x, y, z as float32; points that are not finite are left out.
+[[nodiscard]] Result<Framed<Cloud>> point_cloud(std::string_view cdr);
+/// tf2_msgs/msg/TFMessage.
+[[nodiscard]] Result<std::vector<Transform>> transforms(std::string_view cdr);
+
+}  // namespace liloc::bags

@@ -1,0 +1,27 @@
+#pragma once
+// imu.csv, row by row as samples come. Not thread-safe.
+#include <filesystem>
+#include <fstream>
+
+#include "common/geometry/camera.hpp"
+
+namespace liloc {
+
+class ImuTable {
+ public:
+  /// Makes the folder if need be. Error: the file cannot be made.
+  [[nodiscard]] Status open(const std::filesystem::path& file);
+  /// Whether it was taken: one whose stamp does not rise is left out, since readers refuse it.
+  bool add(const ImuSample& sample);
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+  /// Error: a row could not be written, e.g. as the disk was full.
+  [[nodiscard]] Status close();
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream out_;
+  StampNs last_ns_ = -1;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace liloc

@@ -1,0 +1,98 @@
+// liloc record against a simulated site that streams, as a user runs both.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "common/recording/writer.hpp"
+#include "common/testing/program.hpp"
+#include "proto-tests/replay/tests/temp_folder.hpp"
+
+namespace liloc::toolbox {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class Record : public testing::Test {
+ protected:
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  [[nodiscard]] static Outcome liloc(const std::string& arguments) {
+    return run_program(LILOC_PROGRAM, arguments);
+  }
+  /// Streams two LiDARs and a device until it goes; its files lie in site/.
+  [[nodiscard]] std::jthread streaming() const {
+    std::jthread site([this] {
+      const Outcome outcome = liloc(
+          "sim --live --domain 151 --seconds 12 --lidars 2 --image-width 160 --image-height 120 "
+          "--describe " +
+          path("site"));
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+    });
+    for (int i = 0; i < 1000 && !fs::exists(path("site/device0.json")); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return site;
+  }
+  replay::TempFolder folder_;
+};
+
+TEST_F(Record, AnInterruptLeavesAWholeRecording) {
+  const std::jthread site = streaming();
+  const Outcome outcome = run_program(
+      "timeout", "--preserve-status -s INT 4 " LILOC_PROGRAM " record " + path("rec") + " --site " +
+                     path("site/site.json") + " --device " + path("site/device0.json") + " --domain 151");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("device0: "));
+  const auto recording = open_recording(path("rec"));
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->lidars.size(), 2U);
+  for (const LidarRecording& lidar : recording->lidars) {
+    EXPECT_GE(lidar.depth.size(), 3U) << "6 a second";
+    for (const DepthFile& frame : lidar.depth) EXPECT_TRUE(read_depth(frame, lidar.info.camera)) << frame.path;
+  }
+  ASSERT_EQ(recording->devices.size(), 1U);
+  EXPECT_GE(recording->devices[0].depth.size(), 10U) << "15 a second";
+  EXPECT_GE(recording->devices[0].imu.size(), 100U) << "200 a second";
+}
+
+TEST_F(Record, SilenceIsToldAndADeviceWithoutFramesIsLeftOut) {
+  const Camera camera{80, 60, 60, 60, 39.5, 29.5, 0.001};
+  ASSERT_TRUE(write_site(path("site.json"), {"map", {{"ceiling0", camera, 6, Pose::Identity()}}}));
+  ASSERT_TRUE(write_device(path("device0.json"), {"device0", camera, 15, 0, 200.0, Pose::Identity()}));
+  const Outcome outcome = liloc("record " + path("rec") + " --site " + path("site.json") + " --device " +
+                                path("device0.json") + " --domain 152 --seconds 0.3");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("no ceiling LiDAR was heard on domain 152"));
+  const auto recording = open_recording(path("rec"));
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(recording->devices.empty());
+}
+
+TEST_F(Record, BadUsageIsOneLineAndLeavesNothing) {
+  const Camera camera{80, 60, 60, 60, 39.5, 29.5, 0.001};
+  ASSERT_TRUE(write_site(path("site.json"), {"map", {{"ceiling0", camera, 6, Pose::Identity()}}}));
+  ASSERT_TRUE(write_device(path("twin.json"), {"ceiling0", camera, 15, 0, {}, {}}));
+  const auto wrong = [&](const std::string& arguments, const std::string& part) {
+    const Outcome outcome = liloc("record " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 1) << outcome.out;
+    EXPECT_THAT(outcome.out, HasSubstr(part));
+    EXPECT_FALSE(fs::exists(path("rec")));
+  };
+  wrong(path("rec"), "--site");
+  wrong(path("rec") + " --site " + path("absent.json"), "no such file");
+  wrong(path("rec") + " --domain 152 --site " + path("site.json") + " --device " + path("twin.json"),
+        "two sensors have this id");
+}
+
+TEST_F(Record, WhatStandsInTheWayIsLeftAlone) {
+  const Camera camera{80, 60, 60, 60, 39.5, 29.5, 0.001};
+  ASSERT_TRUE(write_site(path("taken/site.json"), {"map", {{"ceiling0", camera, 6, Pose::Identity()}}}));
+  const Outcome outcome = liloc("record " + path("taken") + " --domain 152 --site " + path("taken/site.json"));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.out, HasSubstr("is there already"));
+  EXPECT_TRUE(fs::exists(path("taken/site.json")));
+}
+
+}  // namespace
+}  // namespace liloc::toolbox

@@ -1,0 +1,42 @@
+#include "server/localization/answered.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace liloc {
+namespace {
+
+constexpr double kGravityOff_rad = radians(5.0);  // by hand
+
+/// A verified pose shows whether what the device takes for gravity is right.
+void note_gravity(const Spot& spot, SpotReply* reply) {
+  if (!reply->verified() || !spot.request().up_sensor) return;
+  const Eigen::Vector3d up_map = reply->T_map_sensor->linear() * *spot.request().up_sensor;
+  const double off_rad = std::acos(std::clamp(up_map.dot(spot.snapshot()->room()->up_map()), -1.0, 1.0));
+  if (off_rad > kGravityOff_rad)
+    reply->text += fmt::format("; the device's gravity is off by {:.0f} deg and was dropped", degrees(off_rad));
+}
+
+}  // namespace
+
+Answer answer_of(DeviceSession& session, const std::shared_ptr<const Spot>& spot, bool spare_time) {
+  Answer answer{refusal(spot->request(), Reason::none, ""), {}};
+  answer.reply.gpc_stamp_ns = spot->gpc_stamp_ns();
+  answer.evidence = session.answer(spot->request(), spot, spare_time, &answer.reply);
+  note_gravity(*spot, &answer.reply);
+  if (!spot->trouble().empty()) answer.reply.text += "; " + spot->trouble();
+  return answer;
+}
+
+Rerun run_again(const Answered& answered) {
+  LocalizerOptions options = answered.options;
+  options.search_limit = std::chrono::hours(1);
+  const auto spot = Spot::create(answered.request, answered.room, options, answered.bounds);
+  if (!spot) return {nullptr, {refusal(answered.request, Reason::bad_cloud, spot.error().message), {}}};
+  DeviceSession session(options, answered.before);
+  return {*spot, answer_of(session, *spot, answered.spare_time)};
+}
+
+}  // namespace liloc

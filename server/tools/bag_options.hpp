@@ -1,0 +1,27 @@
+#pragma once
+// How topics of a bag are given on a command line.
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/recording/bags/convert.hpp"
+
+namespace liloc::toolbox {
+
+struct BagArguments {
+  std::vector<std::string> lidars, devices, imus, truths, device_files;  ///< each ID=VALUE
+  std::string site, world = "map";
+  std::optional<double> still_seconds;
+
+  [[nodiscard]] bool any() const {
+    return !lidars.empty() || !imus.empty() || !truths.empty() || !device_files.empty() || !site.empty();
+  }
+  /// Errors: not ID=VALUE, an id twice.
+  [[nodiscard]] Result<bags::ConvertOptions> options() const;
+};
+
+/// All but --device, which means something else to each command.
+void add_bag_options(CLI::App& command, BagArguments& arguments);
+
+}  // namespace liloc::toolbox

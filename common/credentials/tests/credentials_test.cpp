@@ -103,6 +103,15 @@ TEST_F(CredentialsOf, PermissionsThatWereChangedOrSignedByOthersAreRefused) {
   EXPECT_THAT(error(), HasSubstr("permissions.p7s is not signed by permissions_ca.cert.pem"));
 }
 
+TEST_F(CredentialsOf, PermissionsThatTheIdentityAuthoritySignedAreRefused) {
+  const std::string ca = store->authority().string() + "/identity_ca";
+  ASSERT_TRUE(store->shell(
+      "echo '<subject_name>CN=robot1,OU=device,O=LiLoc</subject_name>' | openssl smime -sign -text "
+      "-signer " +
+      ca + ".cert.pem -inkey " + ca + ".key -out " + folder.string() + "/permissions.p7s"));
+  EXPECT_THAT(error(), HasSubstr("permissions.p7s is not signed by permissions_ca.cert.pem"));
+}
+
 TEST_F(CredentialsOf, OneAuthorityForBothIsRefused) {
   fs::copy_file(folder / "identity_ca.cert.pem", folder / "permissions_ca.cert.pem",
                 fs::copy_options::overwrite_existing);

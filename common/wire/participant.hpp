@@ -36,7 +36,8 @@ struct DomainOptions {
   std::vector<std::string> peers = {};
   int receive_buffer_kb = 4096;  ///< lowered, with a warning, to what net.core.rmem_max allows
   /// Folder of deploy/credentials: traffic is then encrypted and signed, and only with those who have their own
-  /// from the same keystore. Empty: open to everybody.
+  /// from the same keystore. Empty: open to everybody. One identity a process: Cyclone 0.10 holds the
+  /// permissions of its first participant against all.
   std::string credentials = {};
 };
 

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "common/base/stop_signals.hpp"
+#include "common/credentials/credentials_watch.hpp"
 #include "common/recording/recording.hpp"
 #include "server/app/json_line.hpp"
 #include "server/app/server.hpp"
@@ -40,6 +41,24 @@ void open_log(log::Level level, bool json) {
   });
 }
 
+constexpr auto kLookEvery =
+    std::chrono::seconds(2);  // at credentials: twice, and devices join anew within 10 s
+
+/// Until a stop signal, which it returns. Errors: the network, when it joined again.
+Result<int> serve(Server& server, const ServerOptions& options, const StopSignals& signals) {
+  CredentialsWatch credentials(options.seat.credentials);
+  for (;;) {
+    if (const int signal = signals.within(kLookEvery)) return signal;
+    if (!credentials.changed()) continue;
+    if (const auto good = read_credentials(options.seat.credentials); !good) {
+      log::error("{}; the credentials before these stay in use", good.error().message);
+      continue;
+    }
+    log::info("{} has changed: everybody joins anew", options.seat.credentials);
+    if (const Status joined = server.rejoin(options); !joined) return tl::unexpected(joined.error());
+  }
+}
+
 int run(int argc, char** argv) {
   const StopSignals signals;
   int exit_code = 0;
@@ -64,7 +83,12 @@ int run(int argc, char** argv) {
   sd_notify(0, "READY=1");  // does nothing where systemd did not start it
   if (options->metrics)
     log::info("metrics on http://{}:{}/metrics", options->metrics->host, (*server)->metrics_port());
-  log::info("signal {}: stopping", signals.wait());
+  const auto signal = serve(**server, *options, signals);
+  if (!signal) {
+    log::error("{}", signal.error().message);
+    return 1;
+  }
+  log::info("signal {}: stopping", *signal);
   sd_notify(0, "STOPPING=1");
   (*server)->stop();
   const auto last = (*server)->status();

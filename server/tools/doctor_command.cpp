@@ -113,6 +113,8 @@ void add_doctor(CLI::App& app, int& exit_code) {
   command->add_option("--interface", arguments->seat.interface, "Network interface: name, address or auto")
       ->capture_default_str();
   command->add_option("--peer", arguments->seat.peers, "Host of a server; default: this one");
+  command->add_option("--credentials", arguments->seat.credentials,
+                      "Folder of deploy/credentials, to check and to listen with");
   command->add_option("--site", arguments->site_file, "site.json that the server should serve");
   command->add_option("--device", arguments->device_file, "device.json to check");
   command->add_option("--seconds", arguments->seconds, "Longest time to listen for a server")

@@ -33,6 +33,8 @@ struct Credentials {
 /// somebody else.
 [[nodiscard]] Result<Credentials> read_credentials(const std::filesystem::path& folder);
 
+constexpr int kRenewDays = 30;  ///< so long before their end, credentials are complained of; by hand
+
 /// Whole days until `credentials` expire, at `now`; negative when they have.
 [[nodiscard]] int days_left(const Credentials& credentials, std::chrono::system_clock::time_point now);
 

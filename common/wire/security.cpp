@@ -13,7 +13,6 @@ namespace liloc::wire {
 namespace {
 
 using std::filesystem::path;
-constexpr int kWarnDays = 30;  // as `liloc doctor`; time to renew by hand
 
 /// Where the library of DDS that this program runs with keeps its plugins: Debian's in a folder named after it
 /// (libddsc0debian), others beside it.
@@ -55,7 +54,7 @@ Result<Qos> security_qos(const std::string& folder) {
   if (!credentials) return fail("credentials: {}", credentials.error().message);
   const auto plugins = plugin_folder();
   if (!plugins) return fail("credentials: {}", plugins.error().message);
-  if (const int days = days_left(*credentials, std::chrono::system_clock::now()); days < kWarnDays)
+  if (const int days = days_left(*credentials, std::chrono::system_clock::now()); days < kRenewDays)
     log::warning("{} expires in {} days; deploy/credentials renew {}", credentials->certificate().string(),
                  days, credentials->name);
   Qos qos = make_qos();

@@ -181,6 +181,22 @@ TEST_F(Locked, ARevokedDeviceIsRefused) {
   EXPECT_EQ(tally->statuses, 0);
 }
 
+TEST_F(Locked, RecordedPacketsSentAgainOrAlteredAreNoRequests) {
+  tally = &shared_tally();
+  const Process edge([&] { serve(kDomain, folder("edge"), *tally); });
+  const Process robot([&] { ask(kDomain, folder("robotA"), *tally); });
+  ASSERT_TRUE(eventually([&] { return tally->answered > 5; }));
+  const Process thief([&] { replay_packets(kDomain, *tally); });
+  ASSERT_TRUE(eventually([&] { return tally->refused > 0 || tally->overheard > 1000; }));
+  if (tally->refused > 0) GTEST_SKIP() << "SKIPPED: recording packets needs root or CAP_NET_RAW";
+  const int asked = tally->asked, answered = tally->answered;
+  std::this_thread::sleep_for(kAttack);
+  EXPECT_GT(tally->asked - asked, 30);
+  EXPECT_GT(tally->answered - answered, 0.8 * (tally->asked - asked));
+  EXPECT_LE(tally->served, tally->asked + 1) << "a request came twice; one is counted when it has left";
+  EXPECT_EQ(tally->forged_taken, 0);
+}
+
 TEST_F(Locked, AnotherDomainTagIsAnotherWorld) {
   attack({.credentials = folder("robotB"), .partition = "robots/robotB", .domain_tag = "other"});
   nothing_got_through();

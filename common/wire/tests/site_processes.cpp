@@ -154,7 +154,7 @@ void ask(int domain, const std::string& credentials, Tally& tally) {
   }}));
   dispatcher->start();
   for (std::uint64_t seq = 1;; ++seq, std::this_thread::sleep_for(50ms))
-    static_cast<void>(link->send(sample_request(kVictim, seq)));  // nobody may be there yet
+    if (link->send(sample_request(kVictim, seq))) ++tally.asked;  // nobody may be there yet
 }
 
 void intrude(int domain, const Intruder& intruder, const std::string& plugins_of, Tally& tally) {

@@ -12,6 +12,7 @@ namespace liloc::wire {
 struct Tally {
   // Of the server and the device that belong there.
   std::atomic<int> served = 0;           ///< requests of robotA
+  std::atomic<int> asked = 0;            ///< requests that robotA sent
   std::atomic<int> answered = 0;         ///< replies that robotA took
   std::atomic<int> forged_taken = 0;     ///< requests of the intruder that the server took
   std::atomic<int> forged_believed = 0;  ///< replies of the intruder that robotA took
@@ -54,5 +55,10 @@ struct Intruder {
 /// Writes requests and replies and reads both, and the server's status, in any partition it is told.
 /// `plugins_of`: credentials that are in order, to find the plugins by.
 void intrude(int domain, const Intruder& intruder, const std::string& plugins_of, Tally& tally);
+
+/// Records what goes to the server's port for a second, then sends it there again and again: as it was and with
+/// a byte altered. Counts packets sent in `overheard`; needs the right to record, and says in `refused` that it
+/// lacks it.
+void replay_packets(int domain, Tally& tally);
 
 }  // namespace liloc::wire

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What deploy/credentials makes, and what it refuses.   credentials_test.py ROOT"""
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -117,6 +118,18 @@ class Credentials(unittest.TestCase):
 
     def test_help_says_what_it_does(self):
         self.assertIn("credentials revoke robot1", self.made("--help"))
+
+
+class Attacks(unittest.TestCase):
+    def test_each_row_names_a_test_that_exists(self):
+        tests = "".join(file.read_text() for folder in ("common", "server") for file in (ROOT / folder).rglob("*_test.cpp"))
+        rows = [row for row in (ROOT / "deploy/SECURITY.md").read_text().splitlines() if row.startswith("| ")]
+        attacks = [row for row in rows if row.count("|") == 4 and not row.startswith("| attack ")]
+        self.assertGreater(len(attacks), 12)
+        for row in attacks:
+            for name in re.findall(r"`([A-Z]\w+)`", row.split("|")[3]):
+                self.assertRegex(tests, rf"TEST(_F)?\(\w+, {name}\)", row)
+            self.assertRegex(row.split("|")[3], r"`[A-Z]\w{10,}`|`deploy/fuzz`")
 
 
 if __name__ == "__main__":

@@ -122,6 +122,13 @@ TEST(ServerCredentials, ARevocationCutsADeviceOffWithinTenSecondsAndTheOtherIsSe
   EXPECT_FALSE(within(3s, [&] { return b.served(); })) << "it tries again, and stays outside";
   EXPECT_TRUE(a.served());
   EXPECT_THAT(server.log(), HasSubstr("has changed: everybody joins anew"));
+  const std::string log = server.log();
+  int knocks = 0;
+  for (auto at = log.find("certificate revoked"); at != std::string::npos;
+       at = log.find("certificate revoked", at + 1))
+    ++knocks;
+  EXPECT_GE(knocks, 1) << log;
+  EXPECT_LE(knocks, 3) << "each second it knocks four times\n" << log;
   EXPECT_EQ(server.end(SIGTERM), 0) << server.log();
 }
 

@@ -41,9 +41,10 @@ class Locked : public testing::Test {
     ASSERT_TRUE(eventually([&] { return tally->answered > 5; })) << "the site works before the attack";
     const Process thief([&] { intrude(kDomain, intruder, folder("robotA"), *tally); });
     ASSERT_TRUE(eventually([&] { return tally->tries || !thief.running(); }));
-    const int before = tally->answered;
+    const int asked = tally->asked, answered = tally->answered;
     std::this_thread::sleep_for(kAttack);
-    kept_share = (tally->answered - before) / (kAttack / 50ms * 1.0);
+    ASSERT_GT(tally->asked - asked, 10);
+    kept_share = 1.0 * (tally->answered - answered) / (tally->asked - asked);
     ASSERT_TRUE(edge.running() && robot.running() && thief.running());
   }
   void attack(const Intruder& intruder) { attack(intruder, folder("edge"), folder("robotA")); }
@@ -139,25 +140,25 @@ TEST_F(Locked, PermissionsThatADeviceSignedItselfAreRefused) {
 }
 
 TEST_F(Locked, AnExpiredCertificateIsRefused) {
-  ASSERT_TRUE(store->run("device robotX --expires $(date -u -d '+3 seconds' +%Y-%m-%dT%H:%M:%S)"));
+  ASSERT_TRUE(store->run("device robotX --expires $(date -u -d '+5 seconds' +%Y-%m-%dT%H:%M:%S)"));
   tally = &shared_tally();
   const Intruder visitor{.credentials = folder("robotX"), .partition = "robots/robotX"};
   const Process thief([&] { intrude(kDomain, visitor, folder("robotA"), *tally); });
   ASSERT_TRUE(eventually([&] { return tally->tries.load(); }));
   EXPECT_EQ(tally->refused, 2) << "it was valid when it came, and let create what a device may";
-  std::this_thread::sleep_for(3500ms);
+  std::this_thread::sleep_for(5500ms);
   const Process edge([&] { serve(kDomain, folder("edge"), *tally); });
   const Process robot([&] { ask(kDomain, folder("robotA"), *tally); });
   std::this_thread::sleep_for(kAttack);
-  EXPECT_GT(tally->answered, 20);
+  EXPECT_GT(tally->answered, 10);
   kept_share = 1;
   nothing_got_through();
   EXPECT_EQ(tally->statuses, 0);
 }
 
 TEST_F(Locked, ACertificateThatExpiresWhileItsDeviceIsServedIsCutOff) {
-  ASSERT_TRUE(store->run("device robotY --expires $(date -u -d '+5 seconds' +%Y-%m-%dT%H:%M:%S)"));
-  const auto expires = std::chrono::steady_clock::now() + 5s;
+  ASSERT_TRUE(store->run("device robotY --expires $(date -u -d '+8 seconds' +%Y-%m-%dT%H:%M:%S)"));
+  const auto expires = std::chrono::steady_clock::now() + 8s;
   tally = &shared_tally();
   const Process edge([&] { serve(kDomain, folder("edge"), *tally); });
   const Process thief([&] {
@@ -191,7 +192,7 @@ TEST_F(Locked, RecordedPacketsSentAgainOrAlteredAreNoRequests) {
   if (tally->refused > 0) GTEST_SKIP() << "SKIPPED: recording packets needs root or CAP_NET_RAW";
   const int asked = tally->asked, answered = tally->answered;
   std::this_thread::sleep_for(kAttack);
-  EXPECT_GT(tally->asked - asked, 30);
+  EXPECT_GT(tally->asked - asked, 10);
   EXPECT_GT(tally->answered - answered, 0.8 * (tally->asked - asked));
   EXPECT_LE(tally->served, tally->asked + 1) << "a request came twice; one is counted when it has left";
   EXPECT_EQ(tally->forged_taken, 0);

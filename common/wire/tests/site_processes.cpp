@@ -163,12 +163,13 @@ void intrude(int domain, const Intruder& intruder, const std::string& plugins_of
       dds_create_domain(static_cast<dds_domainid_t>(domain), domain_xml(domain, intruder).c_str()), "d"));
   const auto participant =
       checked(dds_create_participant(static_cast<dds_domainid_t>(domain), qos.get(), nullptr), "participant");
-  tally.tries = true;
   if (!participant) {
     ++tally.refused;
+    tally.tries = true;
     for (;;) pause();
   }
   const Tools tools(participant->handle(), intruder.partition, tally);
+  tally.tries = true;
   const std::string name = intruder.partition.substr(std::string(kClientPrefix).size());
   std::uint64_t session = 1;
   for (std::uint64_t seq = kForgedSeq;; ++seq, std::this_thread::sleep_for(20ms)) {

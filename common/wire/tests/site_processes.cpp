@@ -1,6 +1,7 @@
 #include "site_processes.hpp"
 
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -118,6 +119,7 @@ Tally& shared_tally() {
 
 Process::Process(const std::function<void()>& work) : pid_(fork()) {
   if (pid_ != 0) return;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves nobody behind
   work();
   for (;;) pause();
 }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): kill
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -40,6 +41,7 @@ class ServerProgram {
     const std::string domain = std::to_string(kDomain);
     pid_ = fork();
     if (pid_ != 0) return;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (std::freopen(log_.c_str(), "w", stderr) == nullptr) _exit(126);
     execl(LILOC_SERVER, LILOC_SERVER, "--site", site.c_str(), "--domain", domain.c_str(), "--state", "none",
           "--credentials", credentials.c_str(), nullptr);
@@ -78,7 +80,9 @@ class Robot {
       : served_(static_cast<std::atomic<bool>*>(mmap(nullptr, sizeof(std::atomic<bool>), PROT_READ | PROT_WRITE,
                                                      MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {
     pid_ = fork();
-    if (pid_ == 0) drive(id, credentials);
+    if (pid_ != 0) return;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves nobody behind
+    drive(id, credentials);
   }
   ~Robot() {
     kill(pid_, SIGKILL);

@@ -71,7 +71,7 @@ TEST_F(LockedSite, AnothersCredentialsAreToldByTheDaemon) {
   const Outcome wrong = run_program(LILOC_CLIENT, "--id robotB --device " + file("robotA.json") + " --domain " +
                                                       kDomain + " --credentials " + party("robotA"));
   EXPECT_EQ(wrong.exit_code, 1) << wrong.out;
-  EXPECT_THAT(wrong.out, HasSubstr("are the credentials those of this id?"));
+  EXPECT_THAT(wrong.out, HasSubstr("the credentials do not allow it: are they this id's"));
 }
 
 TEST_F(LockedSite, DoctorFailsForCredentialsThatAreNotInOrder) {

@@ -182,6 +182,22 @@ TEST_F(Locked, ARevokedDeviceIsRefused) {
   EXPECT_EQ(tally->statuses, 0);
 }
 
+TEST_F(Locked, WhatCrossesTheWireCannotBeRead) {
+  for (const bool locked : {false, true}) {
+    tally = &shared_tally();
+    const Process edge([&] { serve(kDomain, locked ? folder("edge") : "", *tally); });
+    const Process ear([&] { read_packets(kDomain, *tally); });
+    ASSERT_TRUE(eventually([&] { return tally->tries.load(); }));
+    if (tally->refused > 0) GTEST_SKIP() << "SKIPPED: recording packets needs root or CAP_NET_RAW";
+    const Process robot([&] { ask(kDomain, locked ? folder("robotA") : "", *tally); });
+    ASSERT_TRUE(eventually([&] { return tally->served > 20 && tally->statuses > 40; }));
+    if (locked)
+      EXPECT_EQ(tally->overheard, 0);
+    else
+      EXPECT_GT(tally->overheard, 10) << "it can be found where it is plain";
+  }
+}
+
 TEST_F(Locked, RecordedPacketsSentAgainOrAlteredAreNoRequests) {
   tally = &shared_tally();
   const Process edge([&] { serve(kDomain, folder("edge"), *tally); });

@@ -103,6 +103,12 @@ class Tools {
   std::vector<Entity> parents_;
 };
 
+SpotRequest request_of_victim(std::uint64_t seq) {
+  SpotRequest request = sample_request(kVictim, seq);
+  request.lpc.bytes.assign(kPlainText.begin(), kPlainText.end());
+  return request;
+}
+
 template <class T>
 void read(const Entity& reader, const std::function<void(const T&)>& handle) {
   if (reader.handle() > 0)
@@ -156,7 +162,7 @@ void ask(int domain, const std::string& credentials, Tally& tally) {
   }}));
   dispatcher->start();
   for (std::uint64_t seq = 1;; ++seq, std::this_thread::sleep_for(50ms))
-    if (link->send(sample_request(kVictim, seq))) ++tally.asked;  // nobody may be there yet
+    if (link->send(request_of_victim(seq))) ++tally.asked;  // nobody may be there yet
 }
 
 void intrude(int domain, const Intruder& intruder, const std::string& plugins_of, Tally& tally) {

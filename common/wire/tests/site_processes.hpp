@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace liloc::wire {
 
@@ -56,6 +57,11 @@ struct Intruder {
 /// `plugins_of`: credentials that are in order, to find the plugins by.
 void intrude(int domain, const Intruder& intruder, const std::string& plugins_of, Tally& tally);
 
+/// What robotA's clouds hold, to be found by whoever reads along.
+inline constexpr std::string_view kPlainText = "a cloud of LiLoc in plain";
+/// Records what goes to the server's port: `statuses` counts packets, `overheard` those with kPlainText. Needs
+/// the right to record, and says in `refused` that it lacks it.
+void read_packets(int domain, Tally& tally);
 /// Records what goes to the server's port for a second, then sends it there again and again: as it was and with
 /// a byte altered. Counts packets sent in `overheard`; needs the right to record, and says in `refused` that it
 /// lacks it.

@@ -65,8 +65,8 @@ int open_ear(Tally& tally) {
   const int ear = socket(AF_PACKET, SOCK_RAW, htons(ETH_P_ALL));
   if (ear < 0) ++tally.refused;
   tally.tries = true;
-  while (ear < 0) pause();
-  return ear;
+  if (ear >= 0) return ear;
+  for (;;) pause();
 }
 
 }  // namespace

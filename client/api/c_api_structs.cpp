@@ -118,6 +118,7 @@ Result<Options> options_from(const liloc_client_options* options, std::size_t si
   if (o.lost_sd_m != 0) out.lost_sd_m = o.lost_sd_m;  // 0 from programs older than the fields
   if (o.lost_sd_deg != 0) out.lost_sd_deg = o.lost_sd_deg;
   if (o.codec != 0) out.codec = static_cast<Codec>(o.codec);
+  if (o.credentials != nullptr) out.credentials = o.credentials;
   return out;
 }
 

@@ -56,6 +56,7 @@ Status Client::Impl::connect(const Options& options) {
   domain.role = wire::Role::client;
   domain.interface = options.network_interface;
   domain.peers = options.peers;
+  domain.credentials = options.credentials;
   auto joined = wire::Participant::create(domain);
   if (!joined) return tl::unexpected(joined.error());
   participant = std::move(*joined);

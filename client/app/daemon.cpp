@@ -37,6 +37,7 @@ Status Daemon::join() {
   domain.role = options_.ros.enabled ? wire::Role::peer : wire::Role::client;
   domain.interface = options_.client.network_interface;
   domain.peers = options_.client.peers;
+  domain.credentials = options_.client.credentials;
   auto joined = wire::Participant::create(domain);
   if (!joined) return tl::unexpected(joined.error());
   participant_ = std::move(*joined);

@@ -98,6 +98,9 @@ void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
   app.add_option("--interface", c.network_interface, "Network interface: name, address or auto")
       ->capture_default_str();
   app.add_option("--peer", c.peers, "Host of the server, and of its standby; default: this one");
+  app.add_option(
+      "--credentials", c.credentials,
+      "Folder of deploy/credentials: encrypted, and only with those who have theirs of the same keystore");
   declare_device(app, options, given);
   declare_topics(app, given);
   declare_ros(app, options.ros, given);

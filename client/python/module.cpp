@@ -131,7 +131,7 @@ void declare_client(py::module_& module) {
                        const py::object& T_imu_sensor, double still_seconds, bool cold, std::uint64_t seed,
                        std::size_t queue_frames, std::string trace_folder, const py::object& T_base_sensor,
                        double cpu_share, bool submap, std::size_t request_bytes, int searching_interval_ms,
-                       double lost_sd_m, double lost_sd_deg, const std::string& codec,
+                       double lost_sd_m, double lost_sd_deg, const std::string& codec, std::string credentials,
                        const py::object& on_pose, const py::object& on_reply) {
              Options o;
              o.id = std::move(id);
@@ -155,6 +155,7 @@ void declare_client(py::module_& module) {
              o.searching_interval_ms = searching_interval_ms;
              o.lost_sd_m = lost_sd_m;
              o.lost_sd_deg = lost_sd_deg;
+             o.credentials = std::move(credentials);
              return make_client(std::move(o), local, codec, T_imu_sensor, T_base_sensor, on_pose, on_reply);
            }),
            "id"_a, "camera"_a, py::kw_only(), "domain"_a = d.domain,
@@ -165,8 +166,8 @@ void declare_client(py::module_& module) {
            "queue_frames"_a = d.queue_frames, "trace_folder"_a = d.trace_folder, "T_base_sensor"_a = py::none(),
            "cpu_share"_a = d.cpu_share, "submap"_a = d.submap, "request_bytes"_a = d.request_bytes,
            "searching_interval_ms"_a = d.searching_interval_ms, "lost_sd_m"_a = d.lost_sd_m,
-           "lost_sd_deg"_a = d.lost_sd_deg, "codec"_a = "draco", "on_pose"_a = py::none(),
-           "on_reply"_a = py::none())
+           "lost_sd_deg"_a = d.lost_sd_deg, "codec"_a = "draco", "credentials"_a = d.credentials,
+           "on_pose"_a = py::none(), "on_reply"_a = py::none())
       .def("push_depth", &PythonClient::push_depth, "depth"_a, "stamp_ns"_a)
       .def("push_imu", &PythonClient::push_imu, "stamps_ns"_a, "samples"_a)
       .def("push_points", &PythonClient::push_points, "points"_a, "stamp_ns"_a)

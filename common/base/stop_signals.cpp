@@ -17,10 +17,4 @@ int StopSignals::within(std::chrono::milliseconds time) const {
   return std::max(0, sigtimedwait(&signals_, nullptr, &at_most));
 }
 
-int StopSignals::wait() const {
-  int received = 0;
-  sigwait(&signals_, &received);
-  return received;
-}
-
 }  // namespace liloc

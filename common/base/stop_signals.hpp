@@ -11,8 +11,6 @@ class StopSignals {
   StopSignals();
   /// Which of them came within the time; 0: none.
   [[nodiscard]] int within(std::chrono::milliseconds time) const;
-  /// Waits for one.
-  [[nodiscard]] int wait() const;
 
  private:
   sigset_t signals_{};

@@ -8,6 +8,7 @@ find_package(tl-expected REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(PNG REQUIRED)
+find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
 find_package(TBB REQUIRED)
 find_package(draco REQUIRED)
 find_package(prometheus-cpp REQUIRED) # finds civetweb, too

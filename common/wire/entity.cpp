@@ -16,7 +16,8 @@ std::string_view remedy(dds_return_t code) {
     case DDS_RETCODE_BAD_PARAMETER:
       return "; a value is out of the bounds of idl/";
     case DDS_RETCODE_NOT_ALLOWED_BY_SECURITY:
-      return "; check the permissions document of this participant";
+      return "; the credentials do not allow it: are they this id's, and the topic its own or one of --reads "
+             "and --writes?";
     case DDS_RETCODE_ERROR:
       return "; check that the interface exists (ip addr) and no other server runs in the domain";
     default:

@@ -8,6 +8,7 @@
 
 #include "common/wire/entity.hpp"
 #include "common/wire/log_sink.hpp"
+#include "common/wire/security.hpp"
 
 namespace liloc::wire {
 namespace {
@@ -45,6 +46,12 @@ struct Participant::Impl {
 
 Result<Participant> Participant::create(const DomainOptions& options) {
   install_log_sink();
+  Qos qos = make_qos();
+  if (!options.credentials.empty()) {
+    auto secured = security_qos(options.credentials);
+    if (!secured) return tl::unexpected(secured.error());
+    qos = std::move(*secured);
+  }
   auto impl = std::make_shared<Impl>();
   impl->domain_id = options.domain;
   if (!profile_of_user()) {
@@ -53,8 +60,9 @@ Result<Participant> Participant::create(const DomainOptions& options) {
     impl->domain = std::move(*domain);
   }
   auto participant =
-      checked(dds_create_participant(static_cast<dds_domainid_t>(options.domain), nullptr, nullptr),
-              fmt::format("participant in domain {} on interface {}", options.domain, options.interface));
+      checked(dds_create_participant(static_cast<dds_domainid_t>(options.domain), qos.get(), nullptr),
+              fmt::format("participant in domain {} on interface {}{}", options.domain, options.interface,
+                          options.credentials.empty() ? "" : " with credentials " + options.credentials));
   if (!participant) return tl::unexpected(participant.error());
   impl->participant = std::move(*participant);
   return Participant(std::move(impl));

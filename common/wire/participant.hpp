@@ -35,6 +35,10 @@ struct DomainOptions {
   /// Hosts of the servers and of sources, for client and source; empty: this host.
   std::vector<std::string> peers = {};
   int receive_buffer_kb = 4096;  ///< lowered, with a warning, to what net.core.rmem_max allows
+  /// Folder of deploy/credentials: traffic is then encrypted and signed, and only with those who have their own
+  /// from the same keystore. Empty: open to everybody. One identity a process: Cyclone 0.10 holds the
+  /// permissions of its first participant against all.
+  std::string credentials = {};
 };
 
 /// The UDP port of a domain's server, which others find it at.
@@ -49,7 +53,8 @@ struct DomainOptions {
 /// Movable; everything created on it must go first. Several in one process share the domain's first profile.
 class Participant {
  public:
-  /// Errors carry DDS's own text and the remedy: interface not found, port taken by another server.
+  /// Errors carry DDS's own text and the remedy: interface not found, port taken by another server; or what is
+  /// wrong with the credentials (common/credentials), or that Cyclone DDS has no security plugins here.
   [[nodiscard]] static Result<Participant> create(const DomainOptions& options);
 
   [[nodiscard]] std::int32_t handle() const;

@@ -75,6 +75,7 @@ Result<std::optional<replay::Child>> start_server(const LoadOptions& options, in
                                    std::to_string(domain),
                                    "--state",
                                    "none"};
+  if (!options.credentials.empty()) command.insert(command.end(), {"--credentials", options.credentials});
   command.insert(command.end(), options.server_options.begin(), options.server_options.end());
   auto child = replay::Child::start(command, options.out / "server.log");
   if (!child) return tl::unexpected(child.error());
@@ -94,6 +95,7 @@ class Run {
     clock_.from_s = LoadOptions::warmup_s(clients);
     clock_.to_s = clock_.from_s + options.seconds;
     seat_.domain = domain;
+    seat_.credentials = options.credentials;
     if (!options.server.empty()) {
       seat_.peers = {options.server};
       seat_.interface = "auto";

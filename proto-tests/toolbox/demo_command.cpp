@@ -144,7 +144,7 @@ Status watch_live(LiveSite& site, replay::Fleet& fleet, Watch& watch, const Demo
 Status run_site(const DemoArguments& arguments, const fs::path& folder, bool& all_located) {
   const auto domain = replay::free_domain();
   if (!domain) return tl::unexpected(domain.error());
-  auto site = LiveSite::create(site_options(arguments), *domain);
+  auto site = LiveSite::create(site_options(arguments), *domain, "");
   if (!site) return tl::unexpected(site.error());
   if (auto status = (*site)->describe(folder); !status) return status;
   auto fleet = replay::Fleet::start(fleet_command(**site, folder, *domain));

@@ -11,11 +11,13 @@ using Clock = std::chrono::steady_clock;
 // Of two frames at 6 Hz: what comes later than that is no live stream.
 constexpr auto kMostBehind = std::chrono::milliseconds(300);
 
-Result<std::unique_ptr<LiveSite>> LiveSite::create(const sim::SimOptions& options, int domain) {
+Result<std::unique_ptr<LiveSite>> LiveSite::create(const sim::SimOptions& options, int domain,
+                                                   const std::string& credentials) {
   auto simulation = sim::Simulation::create(options);
   if (!simulation) return tl::unexpected(simulation.error());
   wire::DomainOptions seat;
   seat.domain = domain;
+  seat.credentials = credentials;
   seat.role = wire::Role::source;
   auto participant = wire::Participant::create(seat);
   if (!participant) return tl::unexpected(participant.error());

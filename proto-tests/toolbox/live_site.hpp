@@ -14,8 +14,10 @@ namespace liloc::toolbox {
 
 class LiveSite {
  public:
-  /// Joins the DDS domain as its source of streams. Errors: the options, or DDS.
-  [[nodiscard]] static Result<std::unique_ptr<LiveSite>> create(const sim::SimOptions& options, int domain);
+  /// Joins the DDS domain as its source of streams; with the credentials of a server, which may be everybody,
+  /// or with none. Errors: the options, the credentials, or DDS.
+  [[nodiscard]] static Result<std::unique_ptr<LiveSite>> create(const sim::SimOptions& options, int domain,
+                                                                const std::string& credentials);
   ~LiveSite() = default;
   LiveSite(const LiveSite&) = delete;
   LiveSite& operator=(const LiveSite&) = delete;

@@ -111,6 +111,8 @@ void add_load(CLI::App& app, int& exit_code) {
                    "DDS domain of a server that runs already, with OUT/site.json; -1: start one")
       ->capture_default_str();
   command->add_option("--server", o.server, "Host of that server; this one unless given");
+  command->add_option("--credentials", o.credentials,
+                      "Folder of deploy/credentials of a server, which may be everybody: for both sides");
   command->add_option("--server-option", o.server_options,
                       "For the liloc-server that is started; may be repeated: --server-option=--workers=2");
   command->add_option("--freeze", o.freeze_s, "Stop the server for so many seconds in the middle of a run")

@@ -16,6 +16,7 @@ namespace {
 struct SimArguments {
   std::string out, kind = "office", device_kind = "carried", lidar_sensor = "l515", device_sensor = "l515";
   std::filesystem::path describe;
+  std::string credentials;
   bool live = false;
   int domain = 0;
   bool seconds_given = false;
@@ -62,7 +63,7 @@ void say_dropped(std::size_t more, std::size_t* told, LineLimit* limit) {
 
 int stream(const SimArguments& arguments, const sim::SimOptions& options) {
   replay::catch_stop_signals();
-  auto site = LiveSite::create(options, arguments.domain);
+  auto site = LiveSite::create(options, arguments.domain, arguments.credentials);
   if (!site) return complain(site.error(), kFailed);
   if (!arguments.describe.empty()) {
     if (auto status = (*site)->describe(arguments.describe); !status) return complain(status.error(), kFailed);
@@ -162,6 +163,8 @@ void add_sim(CLI::App& app, int& exit_code) {
   command->add_option("--domain", arguments->domain, "DDS domain of --live")
       ->check(command::in_range(0, 230))
       ->capture_default_str();
+  command->add_option("--credentials", arguments->credentials,
+                      "With --live: folder of deploy/credentials of a server, which may be everybody");
   command->add_option("--describe", arguments->describe,
                       "With --live: folder for site.json and the devices' files");
   command->add_option("--seed", arguments->options.seed, "Everything follows from it")

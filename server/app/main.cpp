@@ -7,6 +7,7 @@
 
 #include "common/base/stop_signals.hpp"
 #include "common/command/log_setup.hpp"
+#include "common/credentials/credentials_watch.hpp"
 #include "common/recording/recording.hpp"
 #include "server/app/json_line.hpp"
 #include "server/app/server.hpp"
@@ -16,6 +17,24 @@ namespace {
 
 std::string as_json(log::Level level, std::string_view line) {
   return json_line(std::chrono::system_clock::now(), level, line);
+}
+
+constexpr auto kLookEvery =
+    std::chrono::seconds(2);  // at credentials: twice, and devices join anew within 10 s
+
+/// Until a stop signal, which it returns. Errors: the network, when it joined again.
+Result<int> serve(Server& server, const ServerOptions& options, const StopSignals& signals) {
+  CredentialsWatch credentials(options.seat.credentials);
+  for (;;) {
+    if (const int signal = signals.within(kLookEvery)) return signal;
+    if (!credentials.changed()) continue;
+    if (const auto good = read_credentials(options.seat.credentials); !good) {
+      log::error("{}; the credentials before these stay in use", good.error().message);
+      continue;
+    }
+    log::info("{} has changed: everybody joins anew", options.seat.credentials);
+    if (const Status joined = server.rejoin(options); !joined) return tl::unexpected(joined.error());
+  }
 }
 
 int run(int argc, char** argv) {
@@ -45,7 +64,12 @@ int run(int argc, char** argv) {
   sd_notify(0, "READY=1");  // does nothing where systemd did not start it
   if (options->metrics)
     log::info("metrics on http://{}:{}/metrics", options->metrics->host, (*server)->metrics_port());
-  log::info("signal {}: stopping", signals.wait());
+  const auto signal = serve(**server, *options, signals);
+  if (!signal) {
+    log::error("{}", signal.error().message);
+    return 1;
+  }
+  log::info("signal {}: stopping", *signal);
   sd_notify(0, "STOPPING=1");
   (*server)->stop();
   const auto last = (*server)->status();

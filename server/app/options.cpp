@@ -41,6 +41,9 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       ->capture_default_str();
   network->add_option("--interface", options.seat.interface, "Network interface: name, address or auto")
       ->capture_default_str();
+  network->add_option(
+      "--credentials", options.seat.credentials,
+      "Folder of deploy/credentials: encrypted, and closed to all who have none of the same keystore");
   network
       ->add_option("--server-id", options.service.server_id,
                    "Name in replies and status; of two servers each needs its own")

@@ -80,13 +80,22 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site
     if (!store) return fail("--{}", store.error().message);
     server->keeper_ = std::make_unique<answers::AnswerKeeper>(std::move(*store));
   }
-  if (auto opened = server->open(options); !opened) return tl::unexpected(opened.error());
-  server->dispatcher_->start();
-  if (options.metrics)
-    if (auto opened = server->open_web(*options.metrics); !opened) return tl::unexpected(opened.error());
-  server->preparer_ =
-      std::jthread([raw = server.get()](const std::stop_token& stop) { raw->keep_prepared(stop); });
+  if (auto joined = server->join(options); !joined) return tl::unexpected(joined.error());
   return server;
+}
+
+Status Server::rejoin(const ServerOptions& options) {
+  leave();
+  return join(options);
+}
+
+Status Server::join(const ServerOptions& options) {
+  if (auto opened = open(options); !opened) return opened;
+  dispatcher_->start();
+  if (options.metrics)
+    if (auto opened = open_web(*options.metrics); !opened) return opened;
+  preparer_ = std::jthread([this](const std::stop_token& stop) { keep_prepared(stop); });
+  return {};
 }
 
 Status Server::open(const ServerOptions& options) {
@@ -207,6 +216,16 @@ void Server::save_learned() {
     log::warning("{}; or name another with --state", written.error().message);
   saved_ = std::move(learned);
   saved_noise_ = std::move(noise);
+}
+
+/// In the order in which members go.
+void Server::leave() {
+  stop();
+  dispatcher_.reset();
+  service_.reset();
+  ingest_.reset();
+  status_publisher_.reset();
+  participant_.reset();
 }
 
 void Server::stop() {

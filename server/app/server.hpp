@@ -25,12 +25,18 @@ class Server {
 
   /// Refuses new requests, finishes what waits, then hears no more of DDS. Safe to call twice.
   void stop();
+  /// Leaves the network and joins it again, with credentials that have changed: only then does DDS look at
+  /// them. What is known of the site and its clouds stays; devices join anew. By the caller of `start`; an
+  /// error leaves it stopped.
+  [[nodiscard]] Status rejoin(const ServerOptions& options);
   [[nodiscard]] wire::ServerStatus status() const;
   /// Of the metrics; 0 without them.
   [[nodiscard]] int metrics_port() const { return web_ ? web_->port() : 0; }
 
  private:
   Server(const ServerOptions& options, Site site);
+  [[nodiscard]] Status join(const ServerOptions& options);
+  void leave();
   [[nodiscard]] Status open(const ServerOptions& options);
   [[nodiscard]] Status open_streams(const ServerOptions& options);
   [[nodiscard]] Status open_web(const web::Address& address);

@@ -24,6 +24,11 @@ inline constexpr std::array kComplaints{
     Complaint{"setting_small", Verdict::doubtful, "{setting} is {value}, bursts of depth frames may be lost",
               "sysctl -w {setting}={wanted}, or 60-liloc.conf for good"},
     Complaint{"file", Verdict::bad, "{error}", ""},
+    Complaint{"credentials_unusable", Verdict::bad, "credentials cannot be used: {error}", ""},
+    Complaint{"credentials_end", Verdict::bad, "the credentials of {name} expire in {days} days",
+              "deploy/credentials renew {name}, and copy its folder again"},
+    Complaint{"credentials_exposed", Verdict::bad, "{file} can be read by others than its owner",
+              "chmod 600 {file}; if strangers had access: deploy/credentials revoke, then renew"},
     Complaint{"network", Verdict::bad, "the network cannot be used: {error}",
               "look at --interface and --domain"},
     Complaint{

@@ -96,6 +96,24 @@ Finding unusable_network(const Error& error) {
   return finding<complaint("network")>(fmt::arg("error", error.message));
 }
 
+std::vector<Finding> check_credentials(const Result<Credentials>& credentials,
+                                       std::chrono::system_clock::time_point now) {
+  if (!credentials)
+    return {finding<complaint("credentials_unusable")>(fmt::arg("error", credentials.error().message))};
+  const auto name = fmt::arg("name", credentials->name);
+  const int days = days_left(*credentials, now);
+  std::vector<Finding> findings;
+  if (days < kRenewDays)
+    findings.push_back(finding<complaint("credentials_end")>(name, fmt::arg("days", days)));
+  if (credentials->key_exposed)
+    findings.push_back(
+        finding<complaint("credentials_exposed")>(fmt::arg("file", credentials->key().string())));
+  if (findings.empty())
+    findings.push_back({Verdict::good, fmt::format("credentials of {} {}, valid for {} days", credentials->kind,
+                                                   credentials->name, days)});
+  return findings;
+}
+
 std::vector<Finding> check_servers(const Heard& heard, const wire::DomainOptions& seat,
                                    const std::optional<Site>& site) {
   std::vector<Finding> findings;

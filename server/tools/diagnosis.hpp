@@ -1,9 +1,11 @@
 #pragma once
 // What `liloc doctor` makes of what it sees; pure.
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/credentials/credentials.hpp"
 #include "common/geometry/camera.hpp"
 #include "common/wire/participant.hpp"
 #include "common/wire/status.hpp"
@@ -24,6 +26,10 @@ struct Finding {
 /// A file that was given and cannot be used; the error names it.
 [[nodiscard]] Finding unreadable_file(const Error& error);
 [[nodiscard]] Finding unusable_network(const Error& error);
+
+/// What `read_credentials` gave, looked at at `now`.
+[[nodiscard]] std::vector<Finding> check_credentials(const Result<Credentials>& credentials,
+                                                     std::chrono::system_clock::time_point now);
 
 /// What was heard of servers.
 struct Heard {

@@ -79,6 +79,22 @@ std::optional<T> read(const std::string& file, Result<T> (*reader)(const std::fi
   return *content;
 }
 
+/// No folder is as good as one that is in order.
+bool usable(const std::string& credentials_folder, std::vector<Finding>& findings) {
+  if (credentials_folder.empty()) return true;
+  const auto credentials = read_credentials(credentials_folder);
+  for (auto& finding : check_credentials(credentials, std::chrono::system_clock::now()))
+    findings.push_back(std::move(finding));
+  return credentials.has_value();
+}
+
+void hear_servers(const DoctorArguments& arguments, const std::optional<Site>& site,
+                  std::vector<Finding>& findings) {
+  const auto heard = listen(arguments);
+  if (!heard) return findings.push_back(unusable_network(heard.error()));
+  for (auto& finding : check_servers(*heard, arguments.seat, site)) findings.push_back(std::move(finding));
+}
+
 int run(const DoctorArguments& arguments) {
   std::vector<Finding> findings{
       check_setting("net.core.rmem_max", setting("/proc/sys/net/core/rmem_max"), 4'194'304),
@@ -90,12 +106,7 @@ int run(const DoctorArguments& arguments) {
     return fmt::format("{}, {}x{}, {}", d.id, d.camera.width, d.camera.height,
                        d.T_imu_sensor ? "with IMU" : "without IMU");
   });
-  const auto heard = listen(arguments);
-  if (!heard) {
-    findings.push_back(unusable_network(heard.error()));
-  } else {
-    for (auto& finding : check_servers(*heard, arguments.seat, site)) findings.push_back(std::move(finding));
-  }
+  if (usable(arguments.seat.credentials, findings)) hear_servers(arguments, site, findings);
   for (const Finding& finding : findings) fmt::print("{}\n", line_of(finding));
   return std::ranges::any_of(findings, [](const Finding& f) { return f.verdict == Verdict::bad; }) ? kFailed
                                                                                                    : kDone;
@@ -113,6 +124,8 @@ void add_doctor(CLI::App& app, int& exit_code) {
   command->add_option("--interface", arguments->seat.interface, "Network interface: name, address or auto")
       ->capture_default_str();
   command->add_option("--peer", arguments->seat.peers, "Host of a server; default: this one");
+  command->add_option("--credentials", arguments->seat.credentials,
+                      "Folder of deploy/credentials, to check and to listen with");
   command->add_option("--site", arguments->site_file, "site.json that the server should serve");
   command->add_option("--device", arguments->device_file, "device.json to check");
   command->add_option("--seconds", arguments->seconds, "Longest time to listen for a server")

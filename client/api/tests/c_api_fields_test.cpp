@@ -84,12 +84,14 @@ TEST(CApiFields, AProgramOfTheFirstReleaseGetsTheDefaultsOfWhatCameLater) {
   o.searching_interval_ms = 77;
   o.lost_sd_m = 77;
   o.codec = LILOC_CODEC_OCTREE;
+  o.credentials = "beyond";
   const auto options = options_from(&o, kThen);
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->request_bytes, Options{}.request_bytes);
   EXPECT_EQ(options->searching_interval_ms, Options{}.searching_interval_ms);
   EXPECT_EQ(options->lost_sd_m, Options{}.lost_sd_m);
   EXPECT_EQ(options->codec, Codec::draco);
+  EXPECT_EQ(options->credentials, "");
   EXPECT_FALSE(options_from(&o, kThen - 1));
 
   liloc_pose_update u{};
@@ -131,11 +133,13 @@ TEST(CApiFields, Options) {
   o.lost_sd_m = 0.2;
   o.lost_sd_deg = 21;
   o.codec = LILOC_CODEC_VOXEL;
+  o.credentials = "keys";
   const auto options = options_from(&o, sizeof o);
   ASSERT_TRUE(options) << options.error().message;
   const auto& [id, camera, domain, interface, peer_list, min_range, max_range, voxel, interval, timeout, local,
                T_imu, still, cold, seed, queue, trace, T_base, submap, share, bytes, searching, lost_m,
-               lost_deg, codec, frames_from] = *options;
+               lost_deg, codec, frames_from, credentials] = *options;
+  EXPECT_EQ(credentials, "keys");
   EXPECT_EQ(codec, Codec::voxel);
   EXPECT_EQ(frames_from, "");  // the calls of a program in C
   EXPECT_EQ(id + interface + trace, "roboteth9trace");

@@ -54,8 +54,9 @@ typedef enum liloc_local {
   LILOC_LOCAL_EXTERNAL = 3 /* the odometry is somebody else's: liloc_client_push_odometry */
 } liloc_local;
 
-/* How a request's clouds travel: draco, 7 to 8 kB a frame at 1.5 mm RMSE; voxel, for thin links, 5 to 7 kB at 1.5 mm;
- * octree, for comparison, 7 to 8 kB at 5 to 11 mm. A server that does not read it gets another that it does. */
+/* How a request's clouds travel: draco, 7 to 8 kB a frame at 1.5 mm RMSE; voxel, for thin links, 5 to 7 kB
+ * at 1.5 mm; octree, for comparison, 7 to 8 kB at 5 to 11 mm. A server that does not read it gets another that
+ * it does. */
 typedef enum liloc_codec { LILOC_CODEC_DRACO = 1, LILOC_CODEC_OCTREE = 2, LILOC_CODEC_VOXEL = 3 } liloc_codec;
 
 typedef enum liloc_state {
@@ -112,10 +113,13 @@ typedef struct liloc_client_options {
   /* Lower bound between global registrations while nothing is verified, 0..60000; 0: a quarter of interval_ms.
    * An answer then brings the next request forward; not under interval_ms: it does not. */
   int32_t searching_interval_ms;
-  /* Standard deviations of the pose beyond which the state is LILOC_LOST, 0.01..100 m and 0.1..180 degrees; 0: 0.3
-   * and 10, which the method's paper counts as a wrong pose. */
+  /* Standard deviations of the pose beyond which the state is LILOC_LOST, 0.01..100 m and 0.1..180 degrees; 0:
+   * 0.3 and 10, which the method's paper counts as a wrong pose. */
   double lost_sd_m, lost_sd_deg;
   int32_t codec; /* liloc_codec; 0: draco */
+  /* Folder of deploy/credentials for this id, at a locked site: traffic is encrypted, and only with those who
+   * have theirs of the same keystore. NULL: none. */
+  const char* credentials;
 } liloc_client_options;
 
 typedef struct liloc_pose_update {
@@ -132,8 +136,8 @@ typedef struct liloc_pose_update {
    * beside a bare wall it is near 0 along the wall, and the pose follows the prediction there. All 0 for a
    * guess, and with LILOC_LOCAL_EXTERNAL. */
   double observed[6];
-  /* Of T_map_sensor, row-major, sensor frame, [rad; m]: that of the last verified answer, carried on by what the
-   * odometry may have erred since. All 0 without has_map. */
+  /* Of T_map_sensor, row-major, sensor frame, [rad; m]: that of the last verified answer, carried on by what
+   * the odometry may have erred since. All 0 without has_map. */
   double covariance[36];
 } liloc_pose_update;
 

@@ -99,6 +99,9 @@ struct Options {
   Codec codec = Codec::draco;
   /// What the frames come from, named where none arrive: a topic. Empty: the program's calls.
   std::string frames_from;
+  /// Folder of deploy/credentials for this id, at a locked site: traffic is encrypted, and only with those who
+  /// have theirs of the same keystore. Empty: none.
+  std::string credentials;
 };
 
 /// searching: never located. tracking: located, the server answers. coasting: located once, and carried on by

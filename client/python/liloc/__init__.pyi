@@ -190,6 +190,7 @@ class Client:
         lost_sd_m: float = 0.3,
         lost_sd_deg: float = 10,
         codec: Literal["draco", "voxel", "octree"] = "draco",
+        credentials: str = "",
         on_pose: Optional[Callable[[PoseUpdate], object]] = None,
         on_reply: Optional[Callable[[Reply], object]] = None,
     ) -> None:

@@ -171,6 +171,8 @@ class Misuse(unittest.TestCase):
     def test_the_networks_error_is_its_own(self):
         with self.assertRaisesRegex(liloc.Error, "nosuchcard0"):
             client(network_interface="nosuchcard0")
+        with self.assertRaisesRegex(liloc.Error, "credentials: /nowhere is no folder"):
+            client(credentials="/nowhere")
 
     def test_wrong_frames(self):
         with client() as robot:

@@ -55,6 +55,22 @@ TEST(Diagnosis, NoServerIsBad) {
               HasSubstr("FAIL  no server is heard in domain 7, interface lo; does one run"));
 }
 
+TEST(Diagnosis, CredentialsThatEndOrThatOthersReadAreBad) {
+  using namespace std::chrono_literals;
+  const auto now = std::chrono::system_clock::now();
+  const auto said = [&](int days, bool exposed) {
+    Credentials c{"/keys", "robot1", "device", std::chrono::ceil<std::chrono::seconds>(now + 24h * days),
+                  exposed};
+    return line_of(check_credentials(c, now).front());
+  };
+  EXPECT_EQ(said(30, false), "ok    credentials of device robot1, valid for 30 days");
+  EXPECT_THAT(said(29, false),
+              HasSubstr("FAIL  the credentials of robot1 expire in 29 days; deploy/credentials renew"));
+  EXPECT_THAT(said(99, true), HasSubstr("FAIL  /keys/key.pem can be read by others than its owner; chmod 600"));
+  EXPECT_THAT(complaints(check_credentials(fail("one CA for both"), now)),
+              HasSubstr("FAIL  credentials cannot be used: one CA for both"));
+}
+
 TEST(Diagnosis, EveryTroubleOfALidarHasItsRemedy) {
   for (const auto& [state, text] :
        {std::pair{wire::LidarState::waiting, "FAIL  edge1: ceiling0 has sent nothing yet; does its driver run"},

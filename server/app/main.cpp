@@ -14,7 +14,8 @@
 namespace liloc {
 namespace {
 
-void open_log(log::Level level, bool json) {
+/// To stderr, and to `tail`.
+void open_log(log::Level level, bool json, const std::shared_ptr<view::LogTail>& tail) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("liloc-server"));
   spdlog::set_pattern(json ? "%v" : "%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
   const auto as_spdlog = [](log::Level l) {
@@ -32,7 +33,8 @@ void open_log(log::Level level, bool json) {
   };
   spdlog::set_level(as_spdlog(level));
   spdlog::flush_on(spdlog::level::debug);
-  log::set_sink([as_spdlog, json](log::Level l, std::string_view line) {
+  log::set_sink([as_spdlog, json, level, tail](log::Level l, std::string_view line) {
+    if (l >= level) tail->add(l, line);
     if (json)
       spdlog::log(as_spdlog(l), "{}", json_line(std::chrono::system_clock::now(), l, line));
     else
@@ -48,13 +50,14 @@ int run(int argc, char** argv) {
     if (!options.error().message.empty()) fmt::print(stderr, "liloc-server: {}\n", options.error().message);
     return exit_code;
   }
-  open_log(options->log_level, options->log_json);
+  const auto tail = std::make_shared<view::LogTail>();
+  open_log(options->log_level, options->log_json, tail);
   const auto site = read_site(options->site_file);
   if (!site) {
     log::error("{}", site.error().message);
     return 2;
   }
-  const auto server = Server::start(*options, *site);
+  const auto server = Server::start(*options, *site, tail);
   if (!server) {
     log::error("{}", server.error().message);
     return 1;
@@ -64,6 +67,11 @@ int run(int argc, char** argv) {
   sd_notify(0, "READY=1");  // does nothing where systemd did not start it
   if (options->metrics)
     log::info("metrics on http://{}:{}/metrics", options->metrics->host, (*server)->metrics_port());
+  if (options->page) {
+    log::info("page on {}", (*server)->page_url());
+    if (!view::is_loopback(*options->page))
+      log::warning("the page travels unencrypted: put a proxy with TLS before it where others share the network");
+  }
   log::info("signal {}: stopping", signals.wait());
   sd_notify(0, "STOPPING=1");
   (*server)->stop();

@@ -21,6 +21,8 @@ struct ServerOptions {
   log::Level log_level = log::Level::info;
   bool log_json = false;                ///< a JSON object a line, in place of text
   std::optional<web::Address> metrics;  ///< where metrics and health are told; empty: nowhere
+  std::optional<web::Address> page;     ///< where the site is shown to browsers; empty: nowhere
+  std::string page_token_file;          ///< of the token that is asked for; empty: see `page_token`
   double status_every_s = 10;           ///< a line in the log; 0: none
 };
 

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "common/base/log.hpp"
+#include "server/view/access.hpp"
 #include "server/web/health.hpp"
 
 namespace liloc {
@@ -48,7 +49,8 @@ Server::Server(const ServerOptions& options, Site site)
                  ? SiteState{}
                  : open_site_state(options.state_file, global_cloud_.site(), voxel_size_m_)),
       localizer_(global_cloud_, with_idle(options.localizer, [this] { return service_->idle(); }),
-                 state_.learned) {
+                 state_.learned),
+      journal_(options.page ? std::make_shared<view::Journal>() : nullptr) {
   saved_ = localizer_.learned();
   global_cloud_.set_known_noise(state_.noise);
   saved_noise_ = state_.noise;
@@ -58,12 +60,16 @@ Server::~Server() {
   stop();
 }
 
-Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site site) {
+Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site site,
+                                              std::shared_ptr<const view::LogTail> log) {
   std::unique_ptr<Server> server(new Server(options, std::move(site)));
   if (auto opened = server->open(options); !opened) return tl::unexpected(opened.error());
   server->dispatcher_->start();
   if (options.metrics)
     if (auto opened = server->open_web(*options.metrics); !opened) return tl::unexpected(opened.error());
+  if (options.page)
+    if (auto opened = server->open_page(options, std::move(log)); !opened)
+      return tl::unexpected(opened.error());
   server->preparer_ =
       std::jthread([raw = server.get()](const std::stop_token& stop) { raw->keep_prepared(stop); });
   return server;
@@ -107,14 +113,17 @@ Status Server::open_streams(const ServerOptions& options) {
   ingest_ = std::move(*ingest);
 
   ServiceBackend backend;
-  backend.locate = [this](const SpotRequest& request) { return localizer_.locate(request); };
-  backend.forget = [this](const std::string& client_id) { localizer_.forget(client_id); };
+  backend.locate = [this](const SpotRequest& request) { return locate(request); };
+  backend.forget = [this](const std::string& client_id) {
+    localizer_.forget(client_id);
+    if (journal_) journal_->forget(client_id);
+  };
   // A LiDAR whose last frame still counts for the stamp need not show a newer one: people move in between,
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
   backend.ready = [this](StampNs stamp_ns) { return ingest_->seen(stamp_ns - GlobalCloudOptions{}.match_ns); };
   backend.ceiling_now = [this](std::chrono::steady_clock::time_point at) { return ingest_->ceiling_now(at); };
   backend.on_stage = [this](Stage stage, double seconds) { metrics_.staged(stage, seconds); };
-  backend.on_answer = [this](const SpotReply& reply) { metrics_.answered(reply); };
+  backend.on_answer = [this](const SpotReply& reply) { note_answer(reply); };
   auto service = Service::create(*dispatcher_, options.service, std::move(backend));
   if (!service) return tl::unexpected(service.error());
   service_ = std::move(*service);
@@ -132,6 +141,40 @@ Status Server::open_web(const web::Address& address) {
   if (!web) return fail("--metrics: {}", web.error().message);
   web_ = std::move(*web);
   return {};
+}
+
+Status Server::open_page(const ServerOptions& options, std::shared_ptr<const view::LogTail> log) {
+  view::PageOptions page{*options.page, ""};
+  if (!options.page_token_file.empty()) {
+    const auto token = view::token_from(options.page_token_file);
+    if (!token) return fail("--web-token: {}", token.error().message);
+    page.token = *token;
+  } else if (!view::is_loopback(page.address)) {
+    page.token = view::new_token();
+  }
+  auto server = view::PageServer::start(page, {.site = global_cloud_.site(),
+                                               .facts = [this] { return facts(); },
+                                               .moment = [this] { return global_cloud_.newest(); },
+                                               .journal = journal_,
+                                               .log = std::move(log)});
+  if (!server) return fail("--web: {}", server.error().message);
+  page_ = std::move(*server);
+  const std::string& host = page.address.host;
+  page_url_ = fmt::format("http://{}:{}/", host.find(':') == std::string::npos ? host : "[" + host + "]",
+                          page_->port());
+  if (!page.token.empty() && options.page_token_file.empty()) page_url_ += "?token=" + page.token;
+  return {};
+}
+
+SpotReply Server::locate(const SpotRequest& request) {
+  SpotReply reply = localizer_.locate(request);
+  if (journal_) journal_->located(request, reply);
+  return reply;
+}
+
+void Server::note_answer(const SpotReply& reply) {
+  metrics_.answered(reply);
+  if (journal_) journal_->answered(reply, std::chrono::steady_clock::now());
 }
 
 web::ServerFacts Server::facts() const {
@@ -185,6 +228,7 @@ void Server::save_learned() {
 }
 
 void Server::stop() {
+  page_.reset();
   web_.reset();
   preparer_.request_stop();
   if (preparer_.joinable()) preparer_.join();

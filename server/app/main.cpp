@@ -70,7 +70,8 @@ int run(int argc, char** argv) {
   if (options->page) {
     log::info("page on {}", (*server)->page_url());
     if (!view::is_loopback(*options->page))
-      log::warning("the page travels unencrypted: put a proxy with TLS before it where others share the network");
+      log::warning(
+          "the page travels unencrypted: put a proxy with TLS before it where others share the network");
   }
   log::info("signal {}: stopping", signals.wait());
   sd_notify(0, "STOPPING=1");

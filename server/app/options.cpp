@@ -106,12 +106,14 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       "--metrics", raw.metrics,
       "PORT or ADDRESS:PORT of /metrics (Prometheus), /healthz and /readyz; PORT alone: on loopback; "
       "default: none");
-  app.add_option("--web", raw.page,
-                 "PORT or ADDRESS:PORT of a page that shows the site in a browser; PORT alone: for browsers on this "
-                 "host; default: none");
-  app.add_option("--web-token", options.page_token_file,
-                 "File whose first line the page asks for; without it the server makes one up where ADDRESS can be "
-                 "reached by others, and tells it in the log");
+  app.add_option(
+      "--web", raw.page,
+      "PORT or ADDRESS:PORT of a page that shows the site in a browser; PORT alone: for browsers on this "
+      "host; default: none");
+  app.add_option(
+      "--web-token", options.page_token_file,
+      "File whose first line the page asks for; without it the server makes one up where ADDRESS can be "
+      "reached by others, and tells it in the log");
   app.add_option("--status-every", options.status_every_s, "Seconds between status lines; 0: none")
       ->check(in_range(0.0, 86'400.0))
       ->capture_default_str();

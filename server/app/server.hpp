@@ -67,7 +67,7 @@ class Server {
   std::atomic<std::chrono::steady_clock::time_point> beat_ = start_;  ///< when the dispatcher was last at work
   web::Metrics metrics_;
   std::string page_url_;
-  std::unique_ptr<web::WebServer> web_;  // its threads ask all of the above
+  std::unique_ptr<web::WebServer> web_;     // its threads ask all of the above
   std::unique_ptr<view::PageServer> page_;  // so does its thread
 };
 

@@ -177,7 +177,8 @@ std::shared_ptr<const Snapshot> GlobalCloud::newest_held() {
     if (!frames.empty()) newest = std::max(newest, frames.back()->stamp_ns());
   std::vector<Frame> frames;
   for (const auto& held : frames_)
-    if (!held.empty() && held.back()->stamp_ns() > newest - 2 * options_.match_ns) frames.push_back(held.back());
+    if (!held.empty() && held.back()->stamp_ns() > newest - 2 * options_.match_ns)
+      frames.push_back(held.back());
   return frames.empty() ? nullptr : snapshot_of(std::move(frames));
 }
 

@@ -42,7 +42,8 @@ class GlobalCloud {
   /// Error: no LiDAR has one.
   [[nodiscard]] Result<std::shared_ptr<const Snapshot>> nearest(StampNs stamp_ns);
 
-  /// Of each LiDAR its newest frame, but for those that fell silent; null before the first frame. Builds nothing.
+  /// Of each LiDAR its newest frame, but for those that fell silent; null before the first frame. Builds
+  /// nothing.
   [[nodiscard]] std::shared_ptr<const Snapshot> newest();
 
   /// Builds the newest snapshot, so that no request has to wait for it: the room's indices if it has changed,

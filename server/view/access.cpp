@@ -76,8 +76,9 @@ Result<std::string> token_from(const std::string& file) {
   token.resize(std::min(token.find('\n'), token.size()));
   while (!token.empty() && (token.back() == '\r' || token.back() == ' ')) token.pop_back();
   if (token.size() < 16 || token.size() > 128 || !std::ranges::all_of(token, of_a_token))
-    return fail("{}: a token is 16 to 128 of A-Z a-z 0-9 _ - in the first line; make one with `openssl rand -hex 16`",
-                file);
+    return fail(
+        "{}: a token is 16 to 128 of A-Z a-z 0-9 _ - in the first line; make one with `openssl rand -hex 16`",
+        file);
   return token;
 }
 

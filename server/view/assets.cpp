@@ -4,7 +4,7 @@
 #include <array>
 
 // The assembler takes the files in; CMake compresses them to LILOC_PAGE_FOLDER.
-#define LILOC_ASSET(symbol, file)                                                                            \
+#define LILOC_ASSET(symbol, file)                                                                              \
   __asm__(".section .rodata\n.balign 16\n.hidden liloc_" #symbol "\n.global liloc_" #symbol "\nliloc_" #symbol \
           ":\n.incbin \"" LILOC_PAGE_FOLDER "/" file ".gz\"\n.hidden liloc_" #symbol                           \
           "_end\n.global liloc_" #symbol "_end\nliloc_" #symbol "_end:\n.byte 0\n.text\n");                    \

@@ -1,6 +1,6 @@
 #pragma once
-// What every viewer is shown, in parts, each replaced by its newer one. A viewer that reads slowly misses what was
-// replaced meanwhile: it holds up nobody, and nothing is queued for it.
+// What every viewer is shown, in parts, each replaced by its newer one. A viewer that reads slowly misses what
+// was replaced meanwhile: it holds up nobody, and nothing is queued for it.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -29,8 +29,8 @@ class Board {
 
   void put(Part part, Message message);
   void clear();
-  /// The part to send next, which then counts as seen; null where all was seen. Of those that are new the one that
-  /// was not sent for longest, so that a slow viewer gets each in turn.
+  /// The part to send next, which then counts as seen; null where all was seen. Of those that are new the one
+  /// that was not sent for longest, so that a slow viewer gets each in turn.
   [[nodiscard]] std::shared_ptr<const Message> next(Seen& seen) const;
 
  private:

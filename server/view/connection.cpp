@@ -69,9 +69,8 @@ void Connection::read() {
   parser_->header_limit(kHeaderLimit);
   parser_->body_limit(kBodyLimit);
   stream_.expires_after(kPatience);
-  http::async_read(stream_, heard_, *parser_, [self = shared_from_this()](const error_code& error, std::size_t) {
-    self->take(error);
-  });
+  http::async_read(stream_, heard_, *parser_,
+                   [self = shared_from_this()](const error_code& error, std::size_t) { self->take(error); });
 }
 
 void Connection::take(error_code error) {
@@ -116,8 +115,9 @@ std::optional<Connection::Response> Connection::refusal(const Request& request) 
   }
   if (token_.empty()) {
     if (names_this_host(as_view(request[http::field::host]))) return std::nullopt;
-    return words(http::status::forbidden,
-                 "this page is for this host alone: open it as http://localhost:PORT, or give --web an address\n");
+    return words(
+        http::status::forbidden,
+        "this page is for this host alone: open it as http://localhost:PORT, or give --web an address\n");
   }
   const auto given = in_query(as_view(request.target()), "token");
   if (given && same_secret(*given, token_))

@@ -11,7 +11,8 @@
 
 namespace liloc::view {
 
-/// Requests of one connection, answered in turn, until one becomes a viewer. All of it runs on the page's thread.
+/// Requests of one connection, answered in turn, until one becomes a viewer. All of it runs on the page's
+/// thread.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;

@@ -64,8 +64,7 @@ void Journal::answered(const SpotReply& reply, Time at) {
   const std::scoped_lock lock(mutex_);
   chart_.add(at, reply.status, reply.latency_ms);
   Entry& entry = entry_of(reply.client_id, at);
-  entry.state = after(entry.state.get(), reply,
-                      entry.scan ? std::optional(entry.scan->seq) : std::nullopt, at);
+  entry.state = after(entry.state.get(), reply, entry.scan ? std::optional(entry.scan->seq) : std::nullopt, at);
 }
 
 void Journal::forget(const std::string& client_id) {

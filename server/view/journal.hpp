@@ -1,5 +1,6 @@
 #pragma once
-// What devices were answered lately: where each one is, where it was, and the cloud of one that was not located.
+// What devices were answered lately: where each one is, where it was, and the cloud of one that was not
+// located.
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -25,7 +26,8 @@ struct DeviceState {
   Matrix6d covariance = Matrix6d::Zero();  ///< as SpotReply::covariance
   bool pose_verified = false;
   double confidence = 0;  ///< of the last answer that the localizer gave
-  std::vector<Eigen::Vector3f> trail_map;  ///< where it was verified to be, the oldest first; at most kTrailKept
+  std::vector<Eigen::Vector3f>
+      trail_map;  ///< where it was verified to be, the oldest first; at most kTrailKept
   std::uint64_t answers = 0;
   std::optional<std::uint64_t> scan_seq;  ///< of the cloud that is kept of it
   std::chrono::steady_clock::time_point at;
@@ -35,11 +37,12 @@ struct DeviceState {
 struct UnlocatedScan {
   std::uint64_t seq = 0;
   EncodedCloud cloud_sensor;
-  std::optional<Pose> T_map_sensor;  ///< this answer's own guess, else where odometry carried the last verified one
+  std::optional<Pose>
+      T_map_sensor;  ///< this answer's own guess, else where odometry carried the last verified one
 };
 
-/// Thread-safe; its lock is held for microseconds, as workers wait for it. Bounded: the devices heard longest ago
-/// are forgotten first.
+/// Thread-safe; its lock is held for microseconds, as workers wait for it. Bounded: the devices heard longest
+/// ago are forgotten first.
 class Journal {
  public:
   using Time = std::chrono::steady_clock::time_point;

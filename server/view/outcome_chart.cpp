@@ -50,9 +50,9 @@ std::vector<ChartColumn> OutcomeChart::columns(Time now) const {
   const std::int64_t first = index_of(now) - kColumns + 1;
   for (const Column& column : columns_)
     if (column.index >= first && column.index < first + kColumns)
-      told.at(static_cast<std::size_t>(column.index - first)) = {
-          column.outcomes[0], column.outcomes[1], column.outcomes[2], quantile_ms(column, 0.5),
-          quantile_ms(column, 0.95)};
+      told.at(static_cast<std::size_t>(column.index - first)) = {column.outcomes[0], column.outcomes[1],
+                                                                 column.outcomes[2], quantile_ms(column, 0.5),
+                                                                 quantile_ms(column, 0.95)};
   return told;
 }
 

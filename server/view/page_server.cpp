@@ -65,7 +65,7 @@ struct PageServer::Impl {
   tcp::acceptor acceptor;
   boost::asio::steady_timer pause;
   const std::shared_ptr<void> seats = std::make_shared<char>();  ///< shared by this and each connection
-  std::jthread thread;  // last: it uses all of the above
+  std::jthread thread;                                           // last: it uses all of the above
 };
 
 bool is_loopback(const web::Address& address) {

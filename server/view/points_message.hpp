@@ -1,7 +1,8 @@
 #pragma once
 // Points for the page, six bytes each. Little-endian, as all of it:
 //
-//   0 u8 kind   1 u8 layout, 1   2 u16 0   4 u32 count   8 f32[3] low_m   20 f32[3] step_m   32 u16[3] each point
+//   0 u8 kind   1 u8 layout, 1   2 u16 0   4 u32 count   8 f32[3] low_m   20 f32[3] step_m   32 u16[3] each
+//   point
 //
 // A point in the map frame is low_m + step_m * numbers: a 20 m room is told to 0.3 mm.
 #include <cstdint>

@@ -160,8 +160,7 @@ std::string charts_message(const std::vector<ChartColumn>& columns) {
 std::string log_message(const std::vector<LogLine>& lines) {
   Json told = Json::array();
   for (const LogLine& line : lines) {
-    const auto ms =
-        std::chrono::duration_cast<std::chrono::milliseconds>(line.at.time_since_epoch()).count();
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(line.at.time_since_epoch()).count();
     told.push_back({ms, name_of(line.level), line.text});
   }
   return text_of({{"part", "log"}, {"lines", std::move(told)}});

@@ -10,9 +10,9 @@ namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
 /// By hand.
-constexpr int kSendBuffer = 256 * 1024;         // the kernel doubles it: all that a slow viewer holds there
-constexpr std::size_t kFrame = 64 * 1024;       // pings get through between two such pieces of a message
-constexpr std::size_t kHeard = 125;             // a viewer has nothing to say
+constexpr int kSendBuffer = 256 * 1024;    // the kernel doubles it: all that a slow viewer holds there
+constexpr std::size_t kFrame = 64 * 1024;  // pings get through between two such pieces of a message
+constexpr std::size_t kHeard = 125;        // a viewer has nothing to say
 constexpr std::chrono::seconds kHandshake{5}, kSilent{120};  // with pings: a slow one takes 20 s for a room
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace liloc::view {
 
-/// A browser that looks on, over WebSocket. At most one message is on its way to it. All of it runs on the page's
-/// thread.
+/// A browser that looks on, over WebSocket. At most one message is on its way to it. All of it runs on the
+/// page's thread.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;

@@ -1,10 +1,10 @@
 #include "server/view/access.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 namespace liloc::view {
 namespace {
@@ -54,8 +54,9 @@ TEST(Access, TokensAreMadeUpAndRead) {
   const auto file = std::filesystem::temp_directory_path() / ("liloc_token_" + std::to_string(getpid()));
   std::ofstream(file) << token << "\r\nmore";
   EXPECT_EQ(token_from(file).value(), token);
-  for (const std::string& bad : {std::string("short"), std::string(129, 'x'), std::string("with a blank in it, too"),
-                                 std::string("\n"), std::string(100'000, 'x')}) {
+  for (const std::string& bad :
+       {std::string("short"), std::string(129, 'x'), std::string("with a blank in it, too"), std::string("\n"),
+        std::string(100'000, 'x')}) {
     std::ofstream(file) << bad;
     const auto read = token_from(file);
     ASSERT_FALSE(read) << bad.substr(0, 40);

@@ -3,8 +3,8 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <optional>
 #include <string>
@@ -48,7 +48,8 @@ class Browser {
   bool looks_ = false;
 };
 
-/// What a viewer's handshake is answered: `HTTP/1.1 101`, or a refusal; with `headers`, each with its line's end.
+/// What a viewer's handshake is answered: `HTTP/1.1 101`, or a refusal; with `headers`, each with its line's
+/// end.
 inline std::string handshake(int port, const std::string& headers = "") {
   boost::asio::io_context io;
   boost::asio::ip::tcp::socket socket(io);

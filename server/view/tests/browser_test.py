@@ -19,7 +19,8 @@ import zlib
 
 DOMAIN = "181"
 SITE = ["--lidars", "3", "--lidar-rate", "5", "--devices", "2", "--device-rate", "10", "--people", "3", "--seed", "7",
-        "--image-width", "240", "--image-height", "180", "--seconds", "600"]
+        "--image-width", "240", "--image-height", "180", "--seconds", "600",
+        "--blocked-start", "30", "--blocked-seconds", "20"]  # a hand before device0
 
 
 class Failure(Exception):
@@ -209,6 +210,11 @@ def look(browser, programs, port, screenshot):
         raise Failure(f"the room's middle has {found} colours: it is not drawn")
     if screenshot:
         pathlib.Path(screenshot).write_bytes(browser.screenshot())
+
+    browser.wait("/^(refused|provisional): /.test(document.getElementById('chosen-why').textContent) && "
+                 "/is drawn/.test(document.getElementById('chosen-scan').textContent)",
+                 "why the picked device is not located is told, and its cloud drawn", 90)
+    print("device0:", browser.value("document.getElementById('chosen-why').textContent"))
 
     if programs.stop(first) != 0:
         raise Failure("the server did not stop in order")

@@ -42,8 +42,9 @@ TEST(PointsMessage, EmptyFlatAndSinglePointsAreTold) {
   EXPECT_TRUE(test::read_points(message({Cloud{}})).points_map.empty());
   const auto flat = test::read_points(message({{{{-3, -3, 1}, {3, 3, 1}}, {}}}));
   for (const auto& p : flat.points_map) EXPECT_NEAR(p.z(), 1, 1e-3);
-  EXPECT_LT((test::read_points(message({{{{7, 8, 9}}, {}}})).points_map.at(0) - Eigen::Vector3f(7, 8, 9)).norm(),
-            1e-3F);
+  EXPECT_LT(
+      (test::read_points(message({{{{7, 8, 9}}, {}}})).points_map.at(0) - Eigen::Vector3f(7, 8, 9)).norm(),
+      1e-3F);
 }
 
 TEST(PointsMessage, ThinsWhatIsTooMuch) {

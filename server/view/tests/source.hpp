@@ -21,6 +21,7 @@ class Place {
                   ++asked;
                   web::ServerFacts facts;
                   facts.server_id = "edge1";
+                  facts.uptime_s = asked;  // the picture's number
                   facts.lidars.resize(1);
                   return facts;
                 },

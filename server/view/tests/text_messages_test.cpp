@@ -84,8 +84,8 @@ TEST(TextMessages, ChartsTellEachColumn) {
 }
 
 TEST(TextMessages, ALogLineThatIsNoUtf8IsStillJson) {
-  const LogLine line{std::chrono::system_clock::time_point(std::chrono::milliseconds(1500)), log::Level::warning,
-                     "\xff<script>"};
+  const LogLine line{std::chrono::system_clock::time_point(std::chrono::milliseconds(1500)),
+                     log::Level::warning, "\xff<script>"};
   const auto told = json::parse(log_message({line}));
   EXPECT_EQ(told["lines"][0][0], 1500);
   EXPECT_EQ(told["lines"][0][1], "warning");

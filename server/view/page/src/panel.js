@@ -90,10 +90,10 @@ export function showChosen(device) {
   const figures = [
     ['confidence', device.confidence === null ? '-' : `${(100 * device.confidence).toFixed(2)} %`],
     ['position', device.pose ? device.pose.slice(0, 3).map((v) => v.toFixed(2)).join(', ') + ' m' : 'not known'],
-    ['standard deviation', number(deviation(device.axes), 1, ' cm')],
-    ['agrees with the ceiling', number(100 * device.overlap, 0, ' %')],
+    ['deviation', number(deviation(device.axes), 1, ' cm')],
+    ['agreement', number(100 * device.overlap, 0, ' %')],
     ['latency', number(device.latency_ms, 1, ' ms')],
-    ['answers', `${device.answers}, the last ${device.age_s.toFixed(1)} s ago`],
+    ['answers', `${device.answers}, last ${device.age_s.toFixed(1)} s ago`],
   ];
   byId('chosen-figures').replaceChildren(...figures.flatMap(([name, value]) => [element('dt', '', name), element('dd', '', value)]));
 }

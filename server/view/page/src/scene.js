@@ -144,8 +144,8 @@ export class Room {
     draw();
   }
 
+  /// But for the camera.
   clear() {
-    this.framed = false;
     for (const cloud of Object.values(this.clouds)) cloud.visible = false;
     this.showSite([]);
     this.showDevices([], null);
@@ -181,7 +181,7 @@ export class Room {
     const middle = this.low.clone().add(this.high).multiplyScalar(0.5);
     const size = this.high.clone().sub(this.low);
     const wide = Math.tan(this.camera.fov * Math.PI / 360) * Math.min(this.camera.aspect, 1);
-    const away = 0.55 * Math.hypot(size.x, size.y, size.z) / wide;
+    const away = 0.46 * Math.hypot(size.x, size.y, size.z) / wide;
     const direction = fromAbove ? new Vector3(0, -0.01, 1) : new Vector3(0.45, -0.75, 0.75);
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(direction.normalize(), away);
@@ -193,7 +193,7 @@ export class Room {
     this.lidars.forEach((held) => discard(held.group));
     this.lidars = lidars.map((told) => {
       const group = new Group();
-      const near = new LineBasicMaterial(), far = new LineBasicMaterial({ transparent: true, opacity: 0.13 });
+      const near = new LineBasicMaterial(), far = new LineBasicMaterial({ transparent: true, opacity: 0.22 });
       group.add(pyramid(told.view, 0.4, near), pyramid(told.view, Math.min(told.range, 4), far));
       place(group, told.pose);
       this.scene.add(group);

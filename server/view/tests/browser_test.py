@@ -203,18 +203,17 @@ def look(browser, programs, port, screenshot):
                  "the picked device is located", 90)
     print("device0:", browser.value("document.getElementById('chosen-figures').innerText").replace("\n", " "))
     browser.wait("document.querySelectorAll('#log li').length > 0", "the log is told")
-    time.sleep(8 if screenshot else 0)  # for trails and charts
     found = colours(browser.screenshot(clip={"x": 260, "y": 200, "width": 400, "height": 400, "scale": 1}))
     print("colours in the room's middle:", found)
     if found < 100:
         raise Failure(f"the room's middle has {found} colours: it is not drawn")
-    if screenshot:
-        pathlib.Path(screenshot).write_bytes(browser.screenshot())
 
     browser.wait("/^(refused|provisional): /.test(document.getElementById('chosen-why').textContent) && "
                  "/is drawn/.test(document.getElementById('chosen-scan').textContent)",
                  "why the picked device is not located is told, and its cloud drawn", 90)
     print("device0:", browser.value("document.getElementById('chosen-why').textContent"))
+    if screenshot:
+        pathlib.Path(screenshot).write_bytes(browser.screenshot())
 
     if programs.stop(first) != 0:
         raise Failure("the server did not stop in order")

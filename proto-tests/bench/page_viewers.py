@@ -28,7 +28,7 @@ def thread_times_s(pid):
     times = {}
     for task in pathlib.Path(f"/proc/{pid}/task").iterdir():
         fields = (task / "stat").read_text().rsplit(")", 1)[1].split()
-        times[task.name] = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        times[(task / "comm").read_text().strip(), task.name] = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
     return times
 
 
@@ -74,7 +74,7 @@ def main():
     if slow:
         print(f"slow one: {slow_rate / 1e3:.0f} kB/s")
     print(f"resident: {before_mb:.1f} MB before, {resident_mb(arguments.pid):.1f} MB now")
-    print("threads, % of a core:", ", ".join(f"{100 * share:.1f} ({task})" for share, task in reversed(used[-6:])))
+    print("threads, % of a core:", ", ".join(f"{100 * share:.1f} {task[0]}" for share, task in reversed(used)))
 
 
 if __name__ == "__main__":

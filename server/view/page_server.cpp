@@ -1,5 +1,7 @@
 #include "server/view/page_server.hpp"
 
+#include <pthread.h>
+
 #include <boost/asio/ip/tcp.hpp>
 #include <exception>
 #include <thread>
@@ -14,6 +16,11 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr std::chrono::milliseconds kPause{100};  // where no connection can be taken: no file is free; by hand
+
+std::string text_of(const tcp::endpoint& endpoint) {
+  const std::string host = endpoint.address().to_string();
+  return fmt::format("{}:{}", endpoint.address().is_v6() ? "[" + host + "]" : host, endpoint.port());
+}
 
 }  // namespace
 
@@ -30,10 +37,9 @@ struct PageServer::Impl {
     if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
     if (!error) acceptor.bind(here, error);
     if (!error) acceptor.listen(tcp::acceptor::max_listen_connections, error);
-    if (error)
-      return fail("cannot listen on {}:{} ({}); free the port, or give another address", options.address.host,
-                  options.address.port, error.message());
-    return {};
+    if (!error) return {};
+    return fail("cannot listen on {} ({}); free the port, or give another address", text_of(here),
+                error.message());
   }
 
   void accept() {
@@ -51,6 +57,7 @@ struct PageServer::Impl {
   }
 
   void run() {
+    pthread_setname_np(pthread_self(), "page");  // as `top -H` shows it
     for (;;) try {
         io.run();
         return;

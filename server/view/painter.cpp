@@ -11,7 +11,7 @@ namespace {
 using std::chrono::seconds;
 
 /// By hand.
-constexpr seconds kRoomEvery{1}, kTrailsEvery{5}, kChartsEvery{1};
+constexpr seconds kRoomEvery{2}, kTrailsEvery{5}, kChartsEvery{1};
 
 /// Notes the time where it is so.
 bool due(std::optional<Painter::Time>& last, Painter::Time now, seconds every) {

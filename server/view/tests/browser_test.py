@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The page in headless Chromium: it draws a simulated site, moves, picks a device, and survives a server's restart.
 
-browser_test.py BIN [--screenshot FILE]   BIN holds liloc, liloc-server and liloc-client
+browser_test.py BIN [--screenshot FILE]   BIN holds liloc, liloc-server and liloc-client; FILE.png gets a FILE.phone.png beside it
 exit 0: it does; 1: it does not; 77: there is no Chromium (`deploy/install --page`)
 """
 import argparse
@@ -225,6 +225,8 @@ def look(browser, programs, port, screenshot):
     browser.wait("Number(document.getElementById('room-points').textContent) > 3000", "the room is drawn again")
     browser.call("Emulation.setDeviceMetricsOverride", width=390, height=844, deviceScaleFactor=2, mobile=True)
     browser.wait("document.documentElement.scrollWidth <= 390", "the page fits a phone's width", 10)
+    if screenshot:
+        pathlib.Path(screenshot).with_suffix(".phone.png").write_bytes(browser.screenshot())
     complaints += browser.foreign_requests(f"{origin}/")
     if complaints:
         raise Failure("; ".join(complaints))

@@ -1,124 +1,18 @@
 // The room in 3D: points, LiDARs, devices. Metres in the map frame, z up.
-import {
-  BufferAttribute, BufferGeometry, Color, GridHelper, Group, Line, LineBasicMaterial, LineSegments, Matrix4, Mesh,
-  MeshBasicMaterial, PerspectiveCamera, Points, Quaternion, Scene, ShaderMaterial, SphereGeometry, Vector3, WebGLRenderer,
-} from 'three';
+import { GridHelper, Group, LineBasicMaterial, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { Device } from './device.js';
+import { Labels } from './labels.js';
+import { COLOURS, discard, place, pyramid } from './pieces.js';
+import { emptyCloud, fillCloud } from './points.js';
 
-export const COLOURS = { verified: 0x4cc38a, provisional: 0xf0b429, refused: 0xf2646a, ok: 0x5bb8e8, slow: 0xf0b429, bad: 0xf2646a };
-const POINT_M = 0.045, PICK_PX = 28, TRAIL = 75;
-
-const vertex = `
-  uniform vec2 heights; uniform float size, pixels; varying float high;
-  void main() {
-    vec4 world = modelMatrix * vec4(position, 1.0);
-    high = clamp((world.z - heights.x) / max(heights.y - heights.x, 0.1), 0.0, 1.0);
-    vec4 seen = viewMatrix * world;
-    gl_Position = projectionMatrix * seen;
-    gl_PointSize = clamp(size * pixels * projectionMatrix[1][1] / max(-seen.z, 0.1), 1.5, 12.0);
-  }`;
-const fragment = `
-  uniform vec3 colour; uniform float byHeight; varying float high;
-  void main() {
-    vec3 low = vec3(0.20, 0.29, 0.42), middle = vec3(0.33, 0.60, 0.66), top = vec3(0.93, 0.90, 0.72);
-    vec3 ramp = high < 0.5 ? mix(low, middle, high * 2.0) : mix(middle, top, high * 2.0 - 1.0);
-    gl_FragColor = vec4(mix(colour, ramp, byHeight), 1.0);
-  }`;
-
-function pointsOf(colour, byHeight, size_m) {
-  const material = new ShaderMaterial({
-    vertexShader: vertex, fragmentShader: fragment,
-    uniforms: { heights: { value: [0, 3] }, size: { value: size_m }, pixels: { value: 500 },
-      colour: { value: new Color(colour) }, byHeight: { value: byHeight } },
-  });
-  const points = new Points(new BufferGeometry(), material);
-  points.frustumCulled = false;
-  points.visible = false;
-  return points;
-}
-
-/// A pyramid of lines from the sensor: tangents [left, right, top, bottom] at a depth; z ahead, y down.
-function pyramid([left, right, top, bottom], depth, material) {
-  const corners = [[left, top], [right, top], [right, bottom], [left, bottom]].map(([x, y]) => [x * depth, y * depth, depth]);
-  const lines = [];
-  corners.forEach((corner, i) => lines.push(0, 0, 0, ...corner, ...corner, ...corners[(i + 1) % 4]));
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array(lines), 3));
-  return new LineSegments(geometry, material);
-}
-
-function place(object, pose) {
-  object.position.set(pose[0], pose[1], pose[2]);
-  object.quaternion.copy(new Quaternion(pose[3], pose[4], pose[5], pose[6]));
-}
-
-function discard(object) {
-  object.traverse((part) => {
-    part.geometry?.dispose();
-    part.material?.dispose();
-  });
-  object.removeFromParent();
-}
-
-class Device {
-  constructor(scene) {
-    this.material = new LineBasicMaterial();
-    this.body = new Group();
-    this.body.add(pyramid([-0.6, 0.6, -0.45, 0.45], 0.45, this.material));
-    this.body.add(new Mesh(new SphereGeometry(0.09, 12, 8), new MeshBasicMaterial()));
-    this.trail = new Line(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.7 }));
-    this.trail.frustumCulled = false;
-    this.doubt = new Mesh(new SphereGeometry(1, 20, 12),
-      new MeshBasicMaterial({ transparent: true, opacity: 0.25, depthWrite: false }));
-    this.doubt.matrixAutoUpdate = false;
-    this.places = [];
-    this.all = new Group().add(this.body, this.trail, this.doubt);
-    scene.add(this.all);
-  }
-
-  show(told, chosen) {
-    const colour = COLOURS[told.status] ?? COLOURS.refused;
-    for (const part of [this.material, this.body.children[1].material, this.trail.material, this.doubt.material]) part.color.set(colour);
-    this.all.visible = Boolean(told.pose);
-    if (!told.pose) return;
-    place(this.body, told.pose);
-    this.body.scale.setScalar(chosen ? 1.5 : 1);
-    this.doubt.visible = told.axes?.length === 9;
-    if (this.doubt.visible) this.showDoubt(told.pose, told.axes);
-    if (told.pose_verified) this.moveTo(told.pose);
-  }
-
-  /// Two standard deviations, and never too thin to be seen.
-  showDoubt(pose, axes) {
-    const column = (i) => {
-      const axis = new Vector3(...axes.slice(3 * i, 3 * i + 3)).multiplyScalar(2);
-      if (axis.length() < 0.02) axis.copy(new Vector3(i === 0, i === 1, i === 2)).multiplyScalar(0.02);
-      return axis;
-    };
-    this.doubt.matrix = new Matrix4().makeBasis(column(0), column(1), column(2)).setPosition(pose[0], pose[1], pose[2]);
-    this.doubt.matrixWorldNeedsUpdate = true;
-  }
-
-  moveTo([x, y, z]) {
-    const n = this.places.length;
-    if (n >= 3 && Math.hypot(x - this.places[n - 3], y - this.places[n - 2], z - this.places[n - 1]) < 0.02) return;
-    this.places.push(x, y, z);
-    this.drawTrail();
-  }
-
-  drawTrail() {
-    this.places.splice(0, Math.max(0, this.places.length - 3 * TRAIL));
-    this.trail.geometry.dispose();
-    this.trail.geometry = new BufferGeometry();
-    this.trail.geometry.setAttribute('position', new BufferAttribute(new Float32Array(this.places), 3));
-  }
-}
+const PICK_PX = 28;
 
 export class Room {
   /// `onPick(id)`: a device was clicked at.
   constructor(canvas, labels, onPick) {
     this.canvas = canvas;
-    this.labels = labels;
+    this.labels = new Labels(labels, (place_map) => this.pixelOf(place_map));
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setClearColor(0x10151b);
@@ -127,13 +21,14 @@ export class Room {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => { this.dirty = true; });
-    this.clouds = { room: pointsOf(0xffffff, 1, POINT_M), moving: pointsOf(0xff8a3d, 0, 0.13), scan: pointsOf(0xf08fe0, 0, 0.07) };
+    this.clouds = {
+      room: emptyCloud(0xffffff, 1, 0.045), moving: emptyCloud(0xff8a3d, 0, 0.13), scan: emptyCloud(0xf08fe0, 0, 0.07),
+    };
     this.grid = new GridHelper(60, 60, 0x2a3440, 0x1c242d);
     this.grid.rotateX(Math.PI / 2);
     this.scene.add(this.grid, ...Object.values(this.clouds));
     this.lidars = [];
     this.devices = new Map();
-    this.tags = new Map();
     this.watchPicks(onPick);
     this.camera.position.set(8, -10, 9);
     this.controls.update();
@@ -154,12 +49,7 @@ export class Room {
   /// Points as `pointsOf` of messages.js has them.
   showPoints(told) {
     const cloud = this.clouds[told.kind];
-    cloud.geometry.dispose();
-    cloud.geometry = new BufferGeometry();
-    cloud.geometry.setAttribute('position', new BufferAttribute(told.steps, 3));
-    cloud.position.set(...told.low);
-    cloud.scale.set(...told.step);
-    cloud.visible = told.count > 0;
+    fillCloud(cloud, told);
     this.dirty = true;
     if (told.kind !== 'room' || told.count === 0) return;
     this.low = new Vector3(...told.low);
@@ -266,41 +156,16 @@ export class Room {
     this.dirty = true;
   }
 
-  tag(key, text, kind, place_map) {
-    let tag = this.tags.get(key);
-    if (!tag) {
-      tag = document.createElement('span');
-      tag.className = kind;
-      tag.textContent = text;
-      this.labels.append(tag);
-      this.tags.set(key, tag);
-    }
-    const at = this.pixelOf(place_map);
-    tag.hidden = !at;
-    if (at) tag.style.transform = `translate(${at[0] + 10}px, ${at[1] - 10}px)`;
-  }
-
-  drawTags() {
-    const wanted = new Set();
-    const mark = (key, ...rest) => {
-      wanted.add(key);
-      this.tag(key, ...rest);
-    };
-    for (const held of this.lidars) mark(`lidar ${held.id}`, held.id, 'lidar', held.group.position);
-    for (const [id, held] of this.devices) if (held.all.visible) mark(`device ${id}`, id, 'device', held.body.position);
-    for (const [key, tag] of this.tags) {
-      if (wanted.has(key)) continue;
-      tag.remove();
-      this.tags.delete(key);
-    }
-  }
-
   draw() {
     this.fitCanvas();
     if (!this.dirty) return;
     this.dirty = false;
     this.renderer.render(this.scene, this.camera);
-    this.drawTags();
+    this.labels.show([
+      ...this.lidars.map((held) => ({ text: held.id, kind: 'lidar', place: held.group.position })),
+      ...[...this.devices].filter(([, held]) => held.all.visible)
+        .map(([id, held]) => ({ text: id, kind: 'device', place: held.body.position })),
+    ]);
     this.canvas.dataset.points = this.renderer.info.render.points;
   }
 }

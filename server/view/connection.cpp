@@ -143,9 +143,11 @@ Connection::Response Connection::page(const Request& request) const {
   const auto target = as_view(request.target());
   if (path_of(target) == "/scan") {
     const auto id = valid_id(in_query(target, "device").value_or(""), "device");
-    std::string bytes = id ? audience_.scan_of(*id) : "";
-    if (!bytes.empty()) return response(http::status::ok, "application/octet-stream", std::move(bytes));
-    return words(http::status::not_found, "there is no cloud of that device, or no place to draw it\n");
+    if (!id) return words(http::status::not_found, id.error().message + "\n");
+    std::string bytes = audience_.scan_of(*id);
+    const auto status =
+        bytes.empty() ? http::status::no_content : http::status::ok;  // as ordinary as the other
+    return response(status, "application/octet-stream", std::move(bytes));
   }
   const Asset* asset = asset_of(path_of(target));
   if (asset == nullptr) return words(http::status::not_found, "no such page\n");

@@ -1,8 +1,9 @@
-// What an operator writes, and what a server keeps of its site.
+// What an operator writes, what a server keeps of its site, and what a browser asks its page for.
 #include "common/command/toml.hpp"
 #include "common/recording/files.hpp"
 #include "proto-tests/fuzz/border.hpp"
 #include "server/app/site_state.hpp"
+#include "server/view/access.hpp"
 
 namespace liloc::fuzz {
 namespace {
@@ -36,6 +37,28 @@ std::string state_seed() {
   return read_file(file, 1 << 20).value();
 }
 
+constexpr std::string_view kToken = "0123456789abcdef";
+
+/// Lines: a request's target, its Cookie, Host and Origin. Let in by a token, on this host, from its own page.
+Status read_web(const std::string& bytes) {
+  std::vector<std::string_view> lines;
+  for (std::string_view rest = bytes; lines.size() < 4;) {
+    const auto end = std::min(rest.find('\n'), rest.size());
+    lines.push_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  require(view::path_of(lines[0]).size() <= lines[0].size(), "a path is longer than its target");
+  const auto in_query = view::in_query(lines[0], "token"), in_cookie = view::in_cookie(lines[1], "liloc_token");
+  for (const auto& [value, of] : {std::pair(in_query, lines[0]), std::pair(in_cookie, lines[1])})
+    require(!value || of.find(*value) != std::string_view::npos, "a value stands where it was not");
+  const auto given = in_query ? in_query : in_cookie;
+  if (!given || !view::same_secret(*given, kToken)) return fail("no token");
+  require(bytes.find(kToken) != std::string::npos, "let in without the token");
+  if (!view::names_this_host(lines[2])) return fail("another host");
+  if (!view::same_origin(lines[3], lines[2])) return fail("another origin");
+  return {};
+}
+
 }  // namespace
 
 std::vector<Border> setting_borders() {
@@ -44,7 +67,11 @@ std::vector<Border> setting_borders() {
                      "peer = [\"10.0.0.1\", 'edge.local', \"a\\tb\"]\n",
                      "\xef\xbb\xbfkey = 1\r\n"},
            .read = read_toml},
-          {.name = "state", .seeds = {state_seed()}, .read = read_state}};
+          {.name = "state", .seeds = {state_seed()}, .read = read_state},
+          {.name = "web",
+           .seeds = {"/?a=1&token=0123456789abcdef\n\nlocalhost:8080\nhttp://localhost:8080",
+                     "/live\nx=1; liloc_token=0123456789abcdef; y=2\n[::1]:80\nhttps://[::1]:80"},
+           .read = read_web}};
 }
 
 }  // namespace liloc::fuzz

@@ -47,14 +47,19 @@ int run(int argc, char** argv) {
     if (!options.error().message.empty()) fmt::print(stderr, "liloc-server: {}\n", options.error().message);
     return exit_code;
   }
-  log::set_sink(command::stderr_sink("liloc-server", options->log_level,
-                                     options->log_json ? as_json : command::LineFormat{}));
+  const auto tail = std::make_shared<view::LogTail>();
+  const auto to_stderr = command::stderr_sink("liloc-server", options->log_level,
+                                              options->log_json ? as_json : command::LineFormat{});
+  log::set_sink([tail, to_stderr, least = options->log_level](log::Level level, std::string_view line) {
+    if (level >= least) tail->add(level, line);
+    to_stderr(level, line);
+  });
   const auto site = read_site(options->site_file);
   if (!site) {
     log::error("{}", site.error().message);
     return 2;
   }
-  const auto server = Server::start(*options, *site);
+  const auto server = Server::start(*options, *site, tail);
   if (!server) {
     log::error("{}", server.error().message);
     return 1;
@@ -64,6 +69,12 @@ int run(int argc, char** argv) {
   sd_notify(0, "READY=1");  // does nothing where systemd did not start it
   if (options->metrics)
     log::info("metrics on http://{}:{}/metrics", options->metrics->host, (*server)->metrics_port());
+  if (options->page) {
+    log::info("page on {}", (*server)->page_url());
+    if (!view::is_loopback(*options->page))
+      log::warning(
+          "the page travels unencrypted: put a proxy with TLS before it where others share the network");
+  }
   const auto signal = serve(**server, *options, signals);
   if (!signal) {
     log::error("{}", signal.error().message);

@@ -14,7 +14,7 @@ using command::in_range;
 
 struct Raw {
   std::string method = "liloc", verify, icp, state, save_answers, log_level = "info", log_format = "text",
-              metrics;
+              metrics, page;
   int hold_ms = 100;
   bool standby = false;
 };
@@ -113,6 +113,14 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       "--metrics", raw.metrics,
       "PORT or ADDRESS:PORT of /metrics (Prometheus), /healthz and /readyz; PORT alone: on loopback; "
       "default: none");
+  app.add_option(
+      "--web", raw.page,
+      "PORT or ADDRESS:PORT of a page that shows the site in a browser; PORT alone: for browsers on this "
+      "host; default: none");
+  app.add_option(
+      "--web-token", options.page_token_file,
+      "File whose first line the page asks for; without it the server makes one up where ADDRESS can be "
+      "reached by others, and tells it in the log");
   app.add_option("--status-every", options.status_every_s, "Seconds between status lines; 0: none")
       ->check(in_range(0.0, 86'400.0))
       ->capture_default_str();
@@ -132,6 +140,14 @@ Status set_variants(const Raw& raw, LocalizerOptions& localizer) {
   return localizer.validated();
 }
 
+Status set_address(const char* name, const std::string& text, std::optional<web::Address>& to) {
+  if (text.empty()) return {};
+  const auto address = web::address_from(text);
+  if (!address) return fail("--{} is '{}'; {}", name, command::excerpt(text), address.error().message);
+  to = *address;
+  return {};
+}
+
 /// What was given as a word, and what must go together.
 Status take(const CLI::App& app, const Raw& raw, ServerOptions& options) {
   const auto method = method_from(raw.method);
@@ -141,11 +157,9 @@ Status take(const CLI::App& app, const Raw& raw, ServerOptions& options) {
   if (!level) return fail("--log-level: {}", level.error().message);
   options.log_level = *level;
   options.log_json = raw.log_format == "json";
-  if (!raw.metrics.empty()) {
-    const auto address = web::address_from(raw.metrics);
-    if (!address) return fail("--metrics is '{}'; {}", command::excerpt(raw.metrics), address.error().message);
-    options.metrics = *address;
-  }
+  if (const auto set = set_address("metrics", raw.metrics, options.metrics); !set) return set;
+  if (const auto set = set_address("web", raw.page, options.page); !set) return set;
+  if (!options.page_token_file.empty() && !options.page) return fail("--web-token goes with --web");
   settle_standby(app, raw, options);
   if (const auto set = set_variants(raw, options.localizer); !set) return fail("--{}", set.error().message);
   if (!raw.save_answers.empty()) {

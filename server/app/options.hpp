@@ -23,7 +23,9 @@ struct ServerOptions {
   log::Level log_level = log::Level::info;
   bool log_json = false;                ///< a JSON object a line, in place of text
   std::optional<web::Address> metrics;  ///< where metrics and health are told; empty: nowhere
-  double status_every_s = 10;           ///< a line in the log; 0: none
+  std::optional<web::Address> page;     ///< where the site is shown to browsers; empty: nowhere
+  std::string page_token_file;  ///< of the token that it asks for; empty: one is made up where others reach it
+  double status_every_s = 10;   ///< a line in the log; 0: none
 };
 
 /// Fills `options`; or prints help, version or what is wrong, and returns the exit code (0 or 2).

@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include "common/base/log.hpp"
+#include "server/view/access.hpp"
 #include "server/web/health.hpp"
 
 namespace liloc {
@@ -63,7 +64,8 @@ Server::Server(const ServerOptions& options, Site site)
       localizer_(
           global_cloud_, with_idle(options.localizer, [this] { return service_->idle(); }), state_.learned,
           options.save_answers ? AnswerSink([this](Answered answered) { keeper_->keep(std::move(answered)); })
-                               : AnswerSink()) {
+                               : AnswerSink()),
+      journal_(options.page ? std::make_shared<view::Journal>() : nullptr) {
   saved_ = localizer_.learned();
   global_cloud_.set_known_noise(state_.noise);
   saved_noise_ = state_.noise;
@@ -73,8 +75,10 @@ Server::~Server() {
   stop();
 }
 
-Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site site) {
+Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site site,
+                                              std::shared_ptr<const view::LogTail> log) {
   std::unique_ptr<Server> server(new Server(options, std::move(site)));
+  server->log_ = std::move(log);
   if (options.save_answers) {
     auto store = answers::AnswerStore::open(*options.save_answers);
     if (!store) return fail("--{}", store.error().message);
@@ -94,6 +98,8 @@ Status Server::join(const ServerOptions& options) {
   dispatcher_->start();
   if (options.metrics)
     if (auto opened = open_web(*options.metrics); !opened) return opened;
+  if (options.page)
+    if (auto opened = open_page(options); !opened) return opened;
   preparer_ = std::jthread([this](const std::stop_token& stop) { keep_prepared(stop); });
   return {};
 }
@@ -136,8 +142,11 @@ Status Server::open_streams(const ServerOptions& options) {
   ingest_ = std::move(*ingest);
 
   ServiceBackend backend;
-  backend.locate = [this](const SpotRequest& request) { return localizer_.locate(request); };
-  backend.forget = [this](const std::string& client_id) { localizer_.forget(client_id); };
+  backend.locate = [this](const SpotRequest& request) { return locate(request); };
+  backend.forget = [this](const std::string& client_id) {
+    localizer_.forget(client_id);
+    if (journal_) journal_->forget(client_id);
+  };
   // A LiDAR whose last frame still counts for the stamp need not show a newer one: people move in between,
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
   backend.seen_until = [this]() -> std::optional<StampNs> {
@@ -146,7 +155,7 @@ Status Server::open_streams(const ServerOptions& options) {
   };
   backend.ceiling_now = [this](std::chrono::steady_clock::time_point at) { return ingest_->ceiling_now(at); };
   backend.on_stage = [this](Stage stage, double seconds) { metrics_.staged(stage, seconds); };
-  backend.on_answer = [this](const SpotReply& reply) { metrics_.answered(reply); };
+  backend.on_answer = [this](const SpotReply& reply) { note_answer(reply); };
   auto service = Service::create(*dispatcher_, options.service, std::move(backend));
   if (!service) return tl::unexpected(service.error());
   service_ = std::move(*service);
@@ -164,6 +173,41 @@ Status Server::open_web(const web::Address& address) {
   if (!web) return fail("--metrics: {}", web.error().message);
   web_ = std::move(*web);
   return {};
+}
+
+Status Server::open_page(const ServerOptions& options) {
+  view::PageOptions page{*options.page, page_token_};  // viewers stay when devices have to join anew
+  if (!options.page_token_file.empty()) {
+    const auto token = view::token_from(options.page_token_file);
+    if (!token) return fail("--web-token: {}", token.error().message);
+    page.token = *token;
+  } else if (page.token.empty() && !view::is_loopback(page.address)) {
+    page.token = view::new_token();
+  }
+  auto server = view::PageServer::start(page, {.site = global_cloud_.site(),
+                                               .facts = [this] { return facts(); },
+                                               .moment = [this] { return global_cloud_.newest(); },
+                                               .journal = journal_,
+                                               .log = log_});
+  if (!server) return fail("--web: {}", server.error().message);
+  page_ = std::move(*server);
+  page_token_ = page.token;
+  const std::string& host = page.address.host;
+  page_url_ = fmt::format("http://{}:{}/", host.find(':') == std::string::npos ? host : "[" + host + "]",
+                          page_->port());
+  if (!page.token.empty() && options.page_token_file.empty()) page_url_ += "?token=" + page.token;
+  return {};
+}
+
+SpotReply Server::locate(const SpotRequest& request) {
+  SpotReply reply = localizer_.locate(request);
+  if (journal_) journal_->located(request, reply);
+  return reply;
+}
+
+void Server::note_answer(const SpotReply& reply) {
+  metrics_.answered(reply);
+  if (journal_) journal_->answered(reply, std::chrono::steady_clock::now());
 }
 
 web::ServerFacts Server::facts() const {
@@ -229,6 +273,7 @@ void Server::leave() {
 }
 
 void Server::stop() {
+  page_.reset();
   web_.reset();
   preparer_.request_stop();
   if (preparer_.joinable()) preparer_.join();

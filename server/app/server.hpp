@@ -11,6 +11,7 @@
 #include "server/global_cloud/global_cloud.hpp"
 #include "server/ingest/ingest.hpp"
 #include "server/service/service.hpp"
+#include "server/view/page_server.hpp"
 #include "server/web/metrics.hpp"
 #include "server/web/web_server.hpp"
 
@@ -18,7 +19,9 @@ namespace liloc {
 
 class Server {
  public:
-  [[nodiscard]] static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Site site);
+  /// `log`: the log's last lines, for the page; may be null.
+  [[nodiscard]] static Result<std::unique_ptr<Server>> start(const ServerOptions& options, Site site,
+                                                             std::shared_ptr<const view::LogTail> log = {});
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -32,6 +35,10 @@ class Server {
   [[nodiscard]] wire::ServerStatus status() const;
   /// Of the metrics; 0 without them.
   [[nodiscard]] int metrics_port() const { return web_ ? web_->port() : 0; }
+  /// Of the page; 0 without it.
+  [[nodiscard]] int page_port() const { return page_ ? page_->port() : 0; }
+  /// What a browser opens to see the page, with the token where one is asked for; empty without it.
+  [[nodiscard]] const std::string& page_url() const { return page_url_; }
 
  private:
   Server(const ServerOptions& options, Site site);
@@ -40,6 +47,9 @@ class Server {
   [[nodiscard]] Status open(const ServerOptions& options);
   [[nodiscard]] Status open_streams(const ServerOptions& options);
   [[nodiscard]] Status open_web(const web::Address& address);
+  [[nodiscard]] Status open_page(const ServerOptions& options);
+  [[nodiscard]] SpotReply locate(const SpotRequest& request);
+  void note_answer(const SpotReply& reply);
   [[nodiscard]] web::ServerFacts facts() const;
   void log_status() const;
   void keep_prepared(const std::stop_token& stop);
@@ -54,6 +64,7 @@ class Server {
   const SiteState state_;  ///< as it was at the start
   Localizer localizer_;
   std::unique_ptr<answers::AnswerKeeper> keeper_;  ///< null: answers are not kept; holds moments of the room
+  const std::shared_ptr<view::Journal> journal_;   ///< null where there is no page
   std::optional<wire::Participant> participant_;   // all below live on it
   std::unique_ptr<wire::StatusPublisher> status_publisher_;
   std::unique_ptr<Ingest> ingest_;
@@ -62,7 +73,10 @@ class Server {
   std::jthread preparer_;
   std::atomic<std::chrono::steady_clock::time_point> beat_ = start_;  ///< when the dispatcher was last at work
   web::Metrics metrics_;
-  std::unique_ptr<web::WebServer> web_;  // its threads ask all of the above
+  std::shared_ptr<const view::LogTail> log_;  ///< for the page; may be null
+  std::string page_url_, page_token_;
+  std::unique_ptr<web::WebServer> web_;     // its threads ask all of the above
+  std::unique_ptr<view::PageServer> page_;  // so does its thread
 };
 
 }  // namespace liloc

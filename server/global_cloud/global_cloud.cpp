@@ -186,20 +186,29 @@ bool GlobalCloud::worth_describing(const std::shared_ptr<const StitchedRoom>& ro
   return describe_ahead_ > 0;
 }
 
+std::shared_ptr<const Snapshot> GlobalCloud::newest_held() {
+  StampNs newest = 0;
+  for (const auto& frames : frames_)
+    if (!frames.empty()) newest = std::max(newest, frames.back()->stamp_ns());
+  std::vector<Frame> frames;
+  for (const auto& held : frames_)
+    if (!held.empty() && held.back()->stamp_ns() > newest - 2 * options_.match_ns)
+      frames.push_back(held.back());
+  return frames.empty() ? nullptr : snapshot_of(std::move(frames));
+}
+
+std::shared_ptr<const Snapshot> GlobalCloud::newest() {
+  const std::scoped_lock lock(mutex_);
+  return newest_held();
+}
+
 void GlobalCloud::prepare() {
   std::shared_ptr<const Snapshot> snapshot;
   bool describe = false;
   {
     const std::scoped_lock lock(mutex_);
-    StampNs newest = 0;
-    for (const auto& frames : frames_)
-      if (!frames.empty()) newest = std::max(newest, frames.back()->stamp_ns());
-    std::vector<Frame> frames;
-    for (const auto& held : frames_)
-      if (!held.empty() && held.back()->stamp_ns() > newest - 2 * options_.match_ns)
-        frames.push_back(held.back());
-    if (frames.empty()) return;
-    snapshot = snapshot_of(std::move(frames));
+    snapshot = newest_held();
+    if (!snapshot) return;
     describe = worth_describing(snapshot->room());
   }
   snapshot->room()->prepare(describe);

@@ -45,6 +45,10 @@ class GlobalCloud {
   /// Error: no LiDAR has one.
   [[nodiscard]] Result<std::shared_ptr<const Snapshot>> nearest(StampNs stamp_ns);
 
+  /// Of each LiDAR its newest frame, but for those that fell silent; null before the first frame. Builds
+  /// nothing.
+  [[nodiscard]] std::shared_ptr<const Snapshot> newest();
+
   /// Builds the newest snapshot, so that no request has to wait for it: the room's indices if it has changed,
   /// what moves, and the lines of sight. Costs nothing until there is a newer frame; descriptors are made only
   /// while some request lately asked for them. Called by a thread of its own.
@@ -79,6 +83,7 @@ class GlobalCloud {
   void keep(std::size_t lidar, Frame frame);
   [[nodiscard]] std::shared_ptr<const StitchedRoom> room_of(const std::vector<Frame>& frames);  ///< mutex_ held
   [[nodiscard]] std::shared_ptr<const Snapshot> snapshot_of(std::vector<Frame> frames);         ///< mutex_ held
+  [[nodiscard]] std::shared_ptr<const Snapshot> newest_held();                                  ///< mutex_ held
   [[nodiscard]] bool worth_describing(const std::shared_ptr<const StitchedRoom>& room);         ///< mutex_ held
   [[nodiscard]] Frame nearest_frame(std::size_t lidar, StampNs stamp_ns) const;  ///< null: none; mutex_ held
 

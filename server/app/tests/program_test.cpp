@@ -180,6 +180,9 @@ TEST(Program, FlagsAreRefusedByTheirName) {
            {"--site s --method paper --verify tracks", "--verify tracks"},
            {"--site s --metrics localhost:80", "--metrics is 'localhost:80'; give PORT"},
            {"--site s --metrics 70000", "--metrics is '70000'"},
+           {"--site s --web localhost:80", "--web is 'localhost:80'; give PORT"},
+           {"--site s --web 0", "--web is '0'"},
+           {"--site s --web-token file", "--web-token goes with --web"},
            {"--site s --log-format xml", "--log-format"},
            {"--site s --one --two", "not expected: '--one' '--two'"}}) {
     const Outcome outcome = outcome_of(arguments);

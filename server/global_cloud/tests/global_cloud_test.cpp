@@ -40,6 +40,21 @@ TEST(GlobalCloud, MatchesTheNearestFramesWithin100Ms) {
   EXPECT_THAT(cloud.nearest(kT0 + from_ms(2000)).error().message, testing::HasSubstr("within 100 ms"));
 }
 
+TEST(GlobalCloud, TheNewestSnapshotHasEachLidarsNewestFrameUnlessItFellSilent) {
+  GlobalCloud cloud(two_lidars(), {});
+  EXPECT_EQ(cloud.newest(), nullptr);
+  ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));
+  ASSERT_TRUE(cloud.add_depth(1, wall(kT0 + from_ms(50))));
+  ASSERT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(100))));
+  const auto both = cloud.newest();
+  ASSERT_EQ(both->frames().size(), 2U);
+  EXPECT_EQ(both->frames()[0]->stamp_ns(), kT0 + from_ms(100));
+  EXPECT_EQ(cloud.newest(), both) << "the same frames are the same snapshot";
+  EXPECT_FALSE(both->has_target()) << "nothing is built for whoever only looks";
+  ASSERT_TRUE(cloud.add_depth(0, wall(kT0 + from_ms(1000))));
+  EXPECT_EQ(cloud.newest()->frames().size(), 1U);
+}
+
 TEST(GlobalCloud, TheNewestSnapshotIsBuiltBeforeAnyoneAsks) {
   GlobalCloud cloud(two_lidars(), {});
   const auto frame = [&](std::size_t lidar, int at_ms) {

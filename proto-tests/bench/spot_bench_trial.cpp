@@ -11,6 +11,7 @@
 #include "common/registration/refine/pose_covariance.hpp"
 #include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/truth.hpp"
+#include "server/localization/answered.hpp"
 #include "server/localization/device_session.hpp"
 #include "server/localization/localizer.hpp"
 #include "server/localization/spot_solver.hpp"
@@ -145,7 +146,7 @@ class Trial {
   SpotReply weighed(const SpotRequest& request, Device& device, double overlap, const Asked& asked) {
     const auto snapshot = cloud_.nearest(request.match_stamp_ns());
     if (!snapshot) return refusal(request, Reason::no_gpc, snapshot.error().message);
-    const auto spot = Spot::create(request, *snapshot, server_options_);
+    const auto spot = spot_of(*device.doubting, request, *snapshot, server_options_);
     if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);
     if (!device.first_asked_ns) device.first_asked_ns = request.stamp_ns;
     SpotReply reply = refusal(request, Reason::none, "");

@@ -13,9 +13,18 @@ constexpr std::string_view kMagic = "LILOCANS";
 constexpr std::uint32_t kVersion = 1;  ///< raised when fields.hpp changes
 constexpr std::size_t kHead = kMagic.size() + sizeof(kVersion), kMostBytes = std::size_t{512} << 20;
 
-/// Plain copies of what a session remembers; spots as requests and numbers of snapshots.
+constexpr std::size_t kMostPoints = kMostCloudBytes;
+
+/// What a spot is made of.
+struct RememberedSpot {
+  SpotRequest request;
+  std::vector<std::uint32_t> moving;
+  std::uint32_t snapshot = 0;  ///< by its number
+};
+
+/// Plain copies of what a session remembers.
 struct Remembered {
-  std::vector<std::pair<SpotRequest, std::uint32_t>> spots;
+  std::vector<RememberedSpot> spots;
   std::deque<Tracks::Searched> searches;
   std::vector<Track> tracks;
 };
@@ -29,8 +38,9 @@ void segment_fields(A& a, Segment& segment, Remembered& memory) {
   });
   maybe(a, segment.followed, [&](auto& followed) { fields(a, followed); });
   list(a, memory.spots, kMostSpots, [&](auto& spot) {
-    fields(a, spot.first);
-    a.number(spot.second);
+    fields(a, spot.request);
+    list(a, spot.moving, kMostPoints, [&](auto& point) { a.number(point); });
+    a.number(spot.snapshot);
   });
   list(a, memory.searches, kMostSpots, [&](auto& search) {
     fields(a, search.T_odom_sensor);
@@ -57,16 +67,18 @@ void write_segment(ArchiveOut& out, const std::optional<DeviceSession::Segment>&
   const Tracks::Memory known = before->tracks.memory();
   Remembered memory{{}, known.searches, known.tracks};
   for (const auto& spot : known.spots)
-    memory.spots.emplace_back(spot->request(),
-                              std::ranges::find(snapshots, spot->snapshot().get()) - snapshots.begin());
+    memory.spots.push_back(
+        {spot->request(), spot->moving(),
+         static_cast<std::uint32_t>(std::ranges::find(snapshots, spot->snapshot().get()) - snapshots.begin())});
   segment_fields(out, *before, memory);
 }
 
-std::shared_ptr<const Spot> spot_of(ArchiveIn& in, const SpotRequest& request, std::size_t snapshot,
-                                    const RoomsIn& rooms, const LocalizerOptions& options) {
-  in.require(snapshot < rooms.snapshots.size(), "a number of a moment that is not there");
+std::shared_ptr<const Spot> spot_of(ArchiveIn& in, const RememberedSpot& remembered, const RoomsIn& rooms,
+                                    const LocalizerOptions& options) {
+  in.require(remembered.snapshot < rooms.snapshots.size(), "a number of a moment that is not there");
   if (!in.status()) return nullptr;
-  const auto spot = Spot::create(request, rooms.snapshots[snapshot], options);
+  const auto spot = Spot::create(remembered.request, rooms.snapshots[remembered.snapshot], options, nullptr,
+                                 [&](const Cloud& /*cloud_sensor*/) { return remembered.moving; });
   in.require(spot.has_value(), "a cloud that cannot be used");
   return spot ? *spot : nullptr;
 }
@@ -80,8 +92,7 @@ std::optional<DeviceSession::Segment> read_segment(ArchiveIn& in, const RoomsIn&
   Remembered memory;
   segment_fields(in, segment, memory);
   Tracks::Memory known{{}, std::move(memory.searches), std::move(memory.tracks)};
-  for (const auto& [request, snapshot] : memory.spots)
-    known.spots.push_back(spot_of(in, request, snapshot, rooms, options));
+  for (const RememberedSpot& spot : memory.spots) known.spots.push_back(spot_of(in, spot, rooms, options));
   if (!in.status()) return std::nullopt;
   segment.tracks = Tracks(TrackOptions{}, std::move(known));
   return segment;
@@ -103,6 +114,7 @@ Result<SavedAnswer> from_payload(std::string_view payload) {
   fields(in, answered.options);
   fields(in, answered.request);
   fields(in, answered.reply);
+  list(in, answered.moving, kMostPoints, [&](auto& point) { in.number(point); });
   in.number(answered.spare_time);
   if (!in.status()) return tl::unexpected(in.status().error());
   const RoomsIn rooms = read_rooms(in, global_cloud_options_for(answered.options).snapshot);
@@ -129,6 +141,7 @@ std::string to_bytes(const Answered& answered) {
   fields(out, answered.options);
   fields(out, answered.request);
   fields(out, answered.reply);
+  list(out, answered.moving, kMostPoints, [&](auto& point) { out.number(point); });
   out.number(answered.spare_time);
   RoomsOut(snapshots).write(out);
   Cells cells(answered.bounds->cells().begin(), answered.bounds->cells().end());

@@ -133,7 +133,7 @@ std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame
         of_same_lidars(room->parts(), parts))
       return room;
   rooms_.push_back(
-      std::make_shared<const StitchedRoom>(std::move(parts), stamp_ns, options_.snapshot, prepared_));
+      std::make_shared<const StitchedRoom>(std::move(parts), options_.snapshot, prepared_, stamp_ns));
   all_rooms_.push_back(rooms_.back());
   if (rooms_.size() > kRoomsKept) rooms_.pop_front();
   return rooms_.back();

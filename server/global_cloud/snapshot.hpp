@@ -76,11 +76,11 @@ class LidarFrame {
 class StitchedRoom {
  public:
   using Parts = std::vector<std::shared_ptr<const LidarSurfaces>>;
-  /// `stamp_ns`: of the newest frame that it was made for. `before`: a room of a moment ago, whose indices may
-  /// serve for this one's, or null.
-  StitchedRoom(Parts parts, StampNs stamp_ns, const SnapshotOptions& options,
-               std::weak_ptr<const StitchedRoom> before = {})
-      : parts_(std::move(parts)), stamp_ns_(stamp_ns), options_(options), before_(std::move(before)) {}
+  /// `before`: a room of a moment ago, whose indices may serve for this one's, or null. `stamp_ns`: of the
+  /// newest frame that it was made for.
+  StitchedRoom(Parts parts, const SnapshotOptions& options, std::weak_ptr<const StitchedRoom> before = {},
+               StampNs stamp_ns = 0)
+      : parts_(std::move(parts)), options_(options), before_(std::move(before)), stamp_ns_(stamp_ns) {}
 
   [[nodiscard]] const Parts& parts() const { return parts_; }
   [[nodiscard]] StampNs stamp_ns() const { return stamp_ns_; }
@@ -97,9 +97,9 @@ class StitchedRoom {
 
  private:
   const Parts parts_;
-  const StampNs stamp_ns_;
   const SnapshotOptions options_;
   const std::weak_ptr<const StitchedRoom> before_;  ///< weak: rooms must not keep all that came before them
+  const StampNs stamp_ns_;
   mutable std::once_flag surfaces_once_, described_once_, up_once_;
   mutable Eigen::Vector3d up_map_ = Eigen::Vector3d::UnitZ();
   mutable std::shared_ptr<const Surfaces> surfaces_;

@@ -21,6 +21,19 @@ void note_gravity(const Spot& spot, SpotReply* reply) {
 
 }  // namespace
 
+Result<std::shared_ptr<const Spot>> spot_of(DeviceSession& session, const SpotRequest& request,
+                                            std::shared_ptr<const Snapshot> room,
+                                            const LocalizerOptions& options,
+                                            std::shared_ptr<const CellBounds> bounds) {
+  if (request.cold || options.method != Method::liloc)
+    return Spot::create(request, std::move(room), options, std::move(bounds));
+  auto spot = Spot::create(
+      request, std::move(room), options, std::move(bounds),
+      [&](const Cloud& cloud_sensor) { return session.earlier_views.moving(request, cloud_sensor); });
+  if (spot) session.earlier_views.add(request, (*spot)->query().view);
+  return spot;
+}
+
 Answer answer_of(DeviceSession& session, const std::shared_ptr<const Spot>& spot, bool spare_time) {
   Answer answer{refusal(spot->request(), Reason::none, ""), {}};
   answer.reply.gpc_stamp_ns = spot->gpc_stamp_ns();
@@ -33,7 +46,8 @@ Answer answer_of(DeviceSession& session, const std::shared_ptr<const Spot>& spot
 Rerun run_again(const Answered& answered) {
   LocalizerOptions options = answered.options;
   options.search_limit = std::chrono::hours(1);
-  const auto spot = Spot::create(answered.request, answered.room, options, answered.bounds);
+  const auto spot = Spot::create(answered.request, answered.room, options, answered.bounds,
+                                 [&](const Cloud& /*cloud_sensor*/) { return answered.moving; });
   if (!spot) return {nullptr, {refusal(answered.request, Reason::bad_cloud, spot.error().message), {}}};
   DeviceSession session(options, answered.before);
   return {*spot, answer_of(session, *spot, answered.spare_time)};

@@ -2,6 +2,7 @@
 // An answer and all that it rests on: with these the same program gives the same answer again.
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "server/localization/device_session.hpp"
 
@@ -13,9 +14,17 @@ struct Answered {
   std::shared_ptr<const Snapshot> room;
   std::shared_ptr<const CellBounds> bounds;
   std::optional<DeviceSession::Segment> before;  ///< what the session remembered when the request came
+  std::vector<std::uint32_t> moving;             ///< of the request's points, by index
   bool spare_time = true;                        ///< for a search that nobody waits for
   SpotReply reply;                               ///< without what the service adds: server_id, latency
 };
+
+/// The request as a spot: without what moves before the device, as far as the method knows of it. A cold one
+/// stands alone. The session's mutex is held.
+[[nodiscard]] Result<std::shared_ptr<const Spot>> spot_of(DeviceSession& session, const SpotRequest& request,
+                                                          std::shared_ptr<const Snapshot> room,
+                                                          const LocalizerOptions& options,
+                                                          std::shared_ptr<const CellBounds> bounds = nullptr);
 
 /// A reply and what the search of the room rested on; no places where there was none.
 struct Answer {

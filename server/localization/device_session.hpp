@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 
+#include "server/localization/earlier_views.hpp"
 #include "server/localization/following.hpp"
 #include "server/localization/verification.hpp"
 
@@ -28,6 +29,7 @@ class DeviceSession {
   }
 
   std::mutex mutex;
+  EarlierViews earlier_views;  ///< of what was asked; `spot_of` looks at them, and adds to them
 
   /// Fills status, reason, advice, pose and confidence of the reply. `spare_time`: there is time for a search
   /// that nobody waits for. Returns what the search of the room rested on; no places where this spot needed

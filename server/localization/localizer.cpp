@@ -46,13 +46,14 @@ struct Localizer::Impl {
     const auto known = bounds();
     const bool spare_time = !options.idle || options.idle();
     std::optional<Answered> kept;
-    if (sink) kept = Answered{options, request, *room, known, held->segment(), spare_time, {}};
-    const auto spot = Spot::create(request, *room, options, known);
+    if (sink) kept = Answered{options, request, *room, known, held->segment(), {}, spare_time, {}};
+    const auto spot = spot_of(*held, request, *room, options, known);
     SpotReply reply = spot ? answer_of(*held, *spot, spare_time).reply
                            : refusal(request, Reason::bad_cloud, spot.error().message);
     if (spot) note_trouble(request.client_id, **spot);
     if (spot) learn(**spot, reply);
     if (kept) {
+      if (spot) kept->moving = (*spot)->moving();
       kept->reply = reply;
       sink(std::move(*kept));
     }

@@ -68,7 +68,8 @@ std::vector<Hypothesis> search_as_paper(const Spot& spot, const LocalizerOptions
 Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
                                                  std::shared_ptr<const Snapshot> snapshot,
                                                  const LocalizerOptions& options,
-                                                 std::shared_ptr<const CellBounds> bounds) {
+                                                 std::shared_ptr<const CellBounds> bounds,
+                                                 const MovingPoints& moving) {
   const auto cloud = decode(request.lpc);
   if (!cloud) return tl::unexpected(cloud.error());
   auto spot = std::make_shared<Spot>();
@@ -84,7 +85,9 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
     else
       spot->trouble_ = "surroundings left out: " + decoded.error().message;
   }
-  spot->query_ = make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed}, extra);
+  if (moving) spot->moving_ = moving(*cloud);
+  spot->query_ =
+      make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed}, extra, spot->moving_);
   const double fewest = kLeastSurface_m2 / (options.voxel_size_m * options.voxel_size_m);
   if (static_cast<double>(spot->query_.cloud.size()) < fewest)
     return fail("the LPC has {} usable points; at least {:.0f} are needed", spot->query_.cloud.size(), fewest);

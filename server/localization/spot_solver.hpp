@@ -1,8 +1,11 @@
 #pragma once
 // The registration side of an answer: a request's cloud against a snapshot.
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "common/protocol/spot.hpp"
 #include "common/registration/spot/spot.hpp"
@@ -11,21 +14,28 @@
 
 namespace liloc {
 
+/// Which of a request's points (sensor frame), by index, are seen but no part of the room.
+using MovingPoints = std::function<std::vector<std::uint32_t>(const Cloud& cloud_sensor)>;
+
 /// A spot to be solved: owns what its problem refers to, so that later spots can look back at it.
 class Spot {
  public:
-  /// `bounds`: what is known of right registrations, if anything is. Error: the LPC cannot be decoded or has
+  /// `bounds`: what is known of right registrations, if anything is. `moving` empty: all belongs to the room.
+  /// Error: the LPC cannot be decoded or has
   /// too few points.
   static Result<std::shared_ptr<const Spot>> create(const SpotRequest& request,
                                                     std::shared_ptr<const Snapshot> snapshot,
                                                     const LocalizerOptions& options,
-                                                    std::shared_ptr<const CellBounds> bounds = nullptr);
+                                                    std::shared_ptr<const CellBounds> bounds = nullptr,
+                                                    const MovingPoints& moving = {});
 
   [[nodiscard]] const SpotProblem& problem() const { return *problem_; }
   /// What it was made of.
   [[nodiscard]] const SpotRequest& request() const { return request_; }
   [[nodiscard]] const std::shared_ptr<const Snapshot>& snapshot() const { return snapshot_; }
   [[nodiscard]] const Query& query() const { return query_; }
+  /// What `moving` said.
+  [[nodiscard]] const std::vector<std::uint32_t>& moving() const { return moving_; }
   [[nodiscard]] StampNs gpc_stamp_ns() const { return gpc_stamp_ns_; }
   [[nodiscard]] const Pose& T_odom_sensor() const { return T_odom_sensor_; }
   /// What of the request could not be used, for people; empty: nothing.
@@ -39,6 +49,7 @@ class Spot {
 
  private:
   SpotRequest request_;
+  std::vector<std::uint32_t> moving_;
   std::shared_ptr<const CellBounds> bounds_;
   std::string trouble_;
   std::shared_ptr<const Snapshot> snapshot_;

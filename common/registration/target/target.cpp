@@ -150,11 +150,23 @@ Target make_target(const Cloud& cloud_map, std::vector<SightView> views, double 
   return {std::move(surfaces), std::move(views)};
 }
 
+/// The points alone.
+Cloud without(const Cloud& cloud, const std::vector<std::uint32_t>& left_out) {
+  std::vector<bool> kept(cloud.size(), true);
+  for (const std::uint32_t i : left_out)
+    if (i < kept.size()) kept[i] = false;
+  Cloud rest;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (kept[i]) rest.points.push_back(cloud.points[i]);
+  return rest;
+}
+
 Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options,
-                 const Cloud& extra_sensor) {
+                 const Cloud& extra_sensor, const std::vector<std::uint32_t>& moving) {
   Query query;
   Cloud seen = voxel_downsample(cloud_sensor, options.voxel_size_m);
   if (camera != nullptr) query.view = SightView::from_cloud(seen, *camera, options.voxel_size_m, 80);
+  if (!moving.empty()) seen = voxel_downsample(without(cloud_sensor, moving), options.voxel_size_m);
   seen.points.insert(seen.points.end(), extra_sensor.points.begin(), extra_sensor.points.end());
   // A cloud that was thinned to few bytes is sparser than its voxels, and nearly all of it would hang in the
   // air.

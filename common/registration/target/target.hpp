@@ -105,8 +105,9 @@ struct QueryOptions {
   std::uint64_t seed = 1;
 };
 /// `camera` null: no view. `extra_sensor`: surfaces around the frame that the device saw shortly before; they
-/// match, but say nothing of what the frame looks through. Drops points that hang in the air.
+/// match, but say nothing of what the frame looks through. `moving`: points of `cloud_sensor`, by index, that
+/// are seen but no part of the room. Drops points that hang in the air.
 [[nodiscard]] Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options,
-                               const Cloud& extra_sensor = {});
+                               const Cloud& extra_sensor = {}, const std::vector<std::uint32_t>& moving = {});
 
 }  // namespace liloc

@@ -60,7 +60,8 @@ TEST_P(PoseEstimateLaw, TheDistanceIsSixOnAverage) {
   double sum = 0;
   constexpr int kDraws = 500;
   for (int i = 0; i < kDraws; ++i)
-    sum += squared_mahalanobis({disturbed(truth, drawn(rng, a)), a}, {disturbed(truth, drawn(rng, b)), b});
+    sum += squared_mahalanobis(PoseEstimate{disturbed(truth, drawn(rng, a)), a},
+                               PoseEstimate{disturbed(truth, drawn(rng, b)), b});
   EXPECT_NEAR(sum / kDraws, 6, 0.7);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, PoseEstimateLaw, testing::Range(1U, 9U));

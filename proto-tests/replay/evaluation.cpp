@@ -179,7 +179,7 @@ DoubtScore score_doubt(const Csv& csv, const std::vector<StampedPose>& online, c
     const PoseEstimate told{poses[*stamp_ns], *covariance};
     const Pose& T_true = truth.pose(static_cast<std::size_t>(i));
     nees.push_back(squared_mahalanobis(told, {T_true, Matrix6d::Zero()}));
-    beyond += nees.back() > 22.5;
+    beyond += nees.back() > kChiSquareLimit;
     untold += !error_of(T_true, told.T_map_sensor).within(10, 0.3) && told.sd_m() <= 0.3 &&
               told.sd_rad() <= radians(10);
   }

@@ -73,7 +73,8 @@ TEST_P(PoseFilterLaw, SquaredMahalanobisIsSixOnAverageWhereBothAreHonest) {
   double sum = 0;
   constexpr int kSpots = 400;
   for (int i = 0; i < kSpots; ++i)
-    sum += squared_mahalanobis({noise.disturbed(truth, before), before}, {noise.disturbed(truth, spot), spot});
+    sum += squared_mahalanobis(PoseEstimate{noise.disturbed(truth, before), before},
+                               PoseEstimate{noise.disturbed(truth, spot), spot});
   EXPECT_NEAR(sum / kSpots, 6, 0.7);  // 6 +- 4 sd of the mean of 400
 }
 

@@ -19,8 +19,8 @@ struct Ceiling {
       lidars.push_back(lidar);
     }
   }
-  void expect_near_truth(std::size_t i) const {
-    EXPECT_LT(distance_m(lidars[i].T_map_sensor, hung()[i]), 0.01) << i;
+  void expect_near_truth(std::size_t i, double within_m = 0.01) const {
+    EXPECT_LT(distance_m(lidars[i].T_map_sensor, hung()[i]), within_m) << i;
     EXPECT_LT(angle_between_rad(lidars[i].T_map_sensor, hung()[i]), radians(0.25)) << i;
   }
   std::vector<LidarScan> scans;
@@ -62,7 +62,7 @@ TEST_P(JointRefineLaw, WhoIsLeftOutNeitherMovesNorPulls) {
   refine_together(nullptr, &ceiling.lidars, {});
   EXPECT_TRUE(ceiling.lidars[2].T_map_sensor.isApprox(stays, 1e-6));
   EXPECT_EQ(ceiling.lidars[2].pairs, 0);
-  ceiling.expect_near_truth(1);
+  ceiling.expect_near_truth(1, 0.02);  // two see less of each other than three
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, JointRefineLaw, testing::Range(1U, 5U));
 

@@ -7,8 +7,8 @@ namespace {
 
 ServerFacts with(wire::LidarState state) {
   ServerFacts facts;
-  facts.lidars.push_back({{"ceiling0", wire::LidarState::silent, 0, 0, 0, ""}, std::nullopt, 0});
-  facts.lidars.push_back({{"ceiling1", state, 8, 9, 0, ""}, 0.1, 0.9});
+  facts.lidars.push_back({{"ceiling0", wire::LidarState::silent, 0, 0, 0, ""}, std::nullopt});
+  facts.lidars.push_back({{"ceiling1", state, 8, 9, 0, ""}, 0.1});
   return facts;
 }
 

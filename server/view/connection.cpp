@@ -144,10 +144,7 @@ Connection::Response Connection::page(const Request& request) const {
   if (path_of(target) == "/scan") {
     const auto id = valid_id(in_query(target, "device").value_or(""), "device");
     if (!id) return words(http::status::not_found, id.error().message + "\n");
-    std::string bytes = audience_.scan_of(*id);
-    const auto status =
-        bytes.empty() ? http::status::no_content : http::status::ok;  // as ordinary as the other
-    return response(status, "application/octet-stream", std::move(bytes));
+    return response(http::status::ok, "application/octet-stream", audience_.scan_of(*id));
   }
   const Asset* asset = asset_of(path_of(target));
   if (asset == nullptr) return words(http::status::not_found, "no such page\n");

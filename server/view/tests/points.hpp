@@ -28,7 +28,7 @@ inline ReadPoints read_points(const std::string& bytes) {
     return read;
   }
   EXPECT_EQ(bytes[1], 1);
-  read.kind = bytes[0];
+  read.kind = static_cast<unsigned char>(bytes[0]);
   const auto low = at<std::array<float, 3>>(bytes, 8), step = at<std::array<float, 3>>(bytes, 20);
   for (std::size_t offset = 32; offset < bytes.size(); offset += 6) {
     const auto n = at<std::array<std::uint16_t, 3>>(bytes, offset);

@@ -35,7 +35,7 @@ async function showScan(device) {
   let told = null;
   try {
     const answer = await fetch(`scan?device=${encodeURIComponent(device.id)}`);
-    if (answer.status === 200) told = pointsOf(await answer.arrayBuffer());
+    if (answer.ok) told = pointsOf(await answer.arrayBuffer());
   } catch { /* the live connection tells that the server is gone */ }
   if (key !== scanKey) return;
   if (!told) room.hideScan();

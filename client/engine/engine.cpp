@@ -118,7 +118,7 @@ void Engine::Impl::set_clock_back(StampNs by_ns) {
   doubt.clock_set(by_ns);
   odometry.clock_set();
   if (external) external->frames_clock_set();
-  if (imu) imu->frames_clock_set();
+  if (imu) imu->frames_clock_set(by_ns);
   set_back_ns = last_ns + by_ns;
   set_back_by_ns = -by_ns;
 }
@@ -168,10 +168,10 @@ Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points,
 void Engine::Impl::judge_imu(StampNs stamp_ns, const OdometryStep& step) {
   const bool measured = !external && step.overlap > 0 && step.converged && !step.doubtful && !step.jumped &&
                         step.observed.head<3>().minCoeff() > kSeenRotation;
-  std::optional<Eigen::Matrix3d> R_odom_imu;
-  if (measured) R_odom_imu = step.T_odom_sensor.linear() * options.T_imu_sensor->linear().transpose();
+  std::optional<Pose> T_odom_imu;
+  if (measured) T_odom_imu = step.T_odom_sensor * options.T_imu_sensor->inverse();
   const bool believed = imu->believed() != nullptr;
-  imu->saw(stamp_ns, R_odom_imu);
+  imu->saw(stamp_ns, T_odom_imu);
   if (inputs.contradicted()) imu->strained();
   if (believed && imu->believed() == nullptr) inputs.forget();
 }

@@ -15,8 +15,8 @@ constexpr double kTurningRad = 0.015;
 // What registration may err by, and intrinsics that are 10 % off with a mounting that is 10 degrees off.
 constexpr double kErrorRad = 0.006, kErrorShare = 0.3;
 constexpr StampNs kRecent = from_ms(3000);
-constexpr StampNs kOffsetWindow = from_ms(8000);
-constexpr double kRecentSteps = 12;                     // that long, where frames are rare
+constexpr StampNs kOffsetWindow = from_ms(8000), kSignWindow = from_ms(8000);
+constexpr double kRareSteps = 12;                       // are looked at where frames are rare
 constexpr std::size_t kJudged = 6, kContradicting = 4;  // of the newest steps
 constexpr std::size_t kProving = 10, kMostStrays = 1;
 constexpr double kPieceS = 0.1;  // over which a device turns evenly
@@ -42,6 +42,11 @@ constexpr double kPushesSeenS = 2;     // from the first of them to the last
 constexpr double kFewestM_s2 = 0.05;   // rms of their changes: registration that errs by 2 mm makes it 0.02
 constexpr double kClearSign = 0.5;     // squared correlation
 constexpr double kMostFactor = 2;      // either way: what is right, or inverted, is as large as what was seen
+
+/// That long, or longer where frames are rare. Something was seen.
+StampNs window_ns(const MotionRecord& record, StampNs at_least) {
+  return std::max(at_least, from_seconds(kRareSteps * record.seen().back().seconds()));
+}
 
 /// What was felt over a step, however long, in pieces.
 std::vector<FeltStep> felt_in_pieces(const MotionRecord& record, const SeenStep& step) {
@@ -84,7 +89,7 @@ std::pair<std::size_t, std::size_t> compared(const MotionRecord& record, const V
   std::size_t agree = 0, contradict = 0;
   const auto& seen = record.seen();
   if (seen.empty()) return {};
-  const StampNs recent = std::max(kRecent, from_seconds(kRecentSteps * seen.back().seconds()));
+  const StampNs recent = window_ns(record, kRecent);
   for (auto step = seen.rbegin(); step != seen.rend() && agree + contradict < most; ++step) {
     if (seen.back().to_ns - step->to_ns > recent) break;
     const auto felt = felt_turn(record, *step, bias_rad_s);
@@ -199,7 +204,8 @@ std::optional<Side> side(Step step, Step end, bool after) {
 Pairs accelerations(const MotionRecord& record) {
   std::vector<Push> pushes;
   for (const SeenStep& step : record.seen())
-    pushes.push_back({step.from_ns, step.to_ns, step.moved_m, felt_force(record, step)});
+    if (record.seen().back().to_ns - step.to_ns < window_ns(record, kSignWindow))
+      pushes.push_back({step.from_ns, step.to_ns, step.moved_m, felt_force(record, step)});
   Pairs pairs;
   StampNs first_ns = 0;
   for (std::size_t i = 1; i < pushes.size(); ++i) {
@@ -252,8 +258,7 @@ Agreement sign_agreement(const MotionRecord& record) {
 
 std::optional<double> gyro_factor(const MotionRecord& record) {
   if (record.seen().empty()) return std::nullopt;
-  const StampNs recent = std::max(kRecent, from_seconds(kRecentSteps * record.seen().back().seconds()));
-  const Pairs felt = rates(record, 0, recent);
+  const Pairs felt = rates(record, 0, window_ns(record, kRecent));
   if (felt.seconds < kFactorSeenS) return std::nullopt;
   const Fit found = fit(felt, Vector3d::Zero(), Vector3d::Zero(), kFewestRad_s);
   if (found.squared < kClearFactor) return std::nullopt;

@@ -11,6 +11,9 @@ namespace {
 
 constexpr StampNs kStep = from_ms(60);          // over which rotations are compared
 constexpr StampNs kLongestStep = from_ms(1500);  // one frame a second, or a little less
+// Frames farther apart are matched where the IMU says alone: so many in a row that are not contradict it.
+constexpr StampNs kRare = from_ms(400);
+constexpr int kUnmatched = 3;
 constexpr StampNs kEvery = from_ms(1000);       // an explanation is sought
 constexpr StampNs kSignEvery = from_ms(400);    // the force's sign is compared: it takes seconds to show
 constexpr StampNs kMostCorrected = from_ms(1000), kSameOffset = from_ms(30);
@@ -39,7 +42,8 @@ Status ImuTrust::add(const ImuSample& sample) {
   return {};
 }
 
-void ImuTrust::saw(StampNs stamp_ns, const std::optional<Pose>& T_odom_imu) {
+void ImuTrust::saw(StampNs stamp_ns, const std::optional<Pose>& T_odom_imu, bool unmatched) {
+  count_unmatched(stamp_ns - now_ns_, T_odom_imu.has_value(), unmatched);
   now_ns_ = stamp_ns;
   if (track_.newest_ns()) ahead_ns_ = *track_.newest_ns() - stamp_ns;
   const bool come = std::exchange(samples_come_, false);
@@ -66,15 +70,29 @@ bool ImuTrust::far_off() const {
   return std::abs(ahead_ns_) > kFar && (far() || !track_.surrounds(now_ns_));
 }
 
+void ImuTrust::count_unmatched(StampNs step_ns, bool measured, bool unmatched) {
+  if (measured || step_ns < kRare || believed() == nullptr)
+    unmatched_ = 0;
+  else if (unmatched)
+    ++unmatched_;
+}
+
+/// What contradicts; strain where nothing says more than that something does.
+ImuTrust::Reason ImuTrust::contradiction() const {
+  if (gyro_agreement(record_, track_.gyro_bias_rad_s()) == Agreement::contradicts) return Reason::gyro;
+  if (force_agreement(record_) == Agreement::contradicts) return Reason::force;
+  if (sign_ == Agreement::contradicts) return Reason::sign;
+  return unmatched_ >= kUnmatched ? Reason::strain : Reason::none;
+}
+
 void ImuTrust::judge() {
-  if (reason_ == Reason::none) {
-    if (gyro_agreement(record_, track_.gyro_bias_rad_s()) == Agreement::contradicts)
-      leave_out(Reason::gyro);
-    else if (force_agreement(record_) == Agreement::contradicts)
-      leave_out(Reason::force);
-    else if (now_ns_ - sign_ns_ >= kSignEvery && sign() == Agreement::contradicts)
-      leave_out(Reason::sign);
+  if (now_ns_ - sign_ns_ >= kSignEvery) {
+    sign_ns_ = now_ns_;
+    sign_ = sign_agreement(record_);
   }
+  // What strains may show itself once the matches are not led by it any more.
+  if (reason_ == Reason::none || reason_ == Reason::strain)
+    if (const Reason found = contradiction(); found > reason_) leave_out(found);
   if (reason_ == Reason::none && late_frames_ == 0) return;
   if (now_ns_ - explained_ns_ >= kEvery) explain();
   if (reason_ != Reason::none && agrees_again()) believe_again();
@@ -99,24 +117,18 @@ Eigen::Vector3d ImuTrust::bias_rad_s() const {
   return bias.norm() < kMostBias ? bias : Eigen::Vector3d::Zero();
 }
 
-Agreement ImuTrust::sign() {
-  sign_ns_ = now_ns_;
-  return sign_agreement(record_);
-}
-
-bool ImuTrust::agrees_again() {
+bool ImuTrust::agrees_again() const {
   if (reason_ == Reason::strain && now_ns_ - left_out_ns_ < retry_ns_) return false;
   const Agreement gyro = gyro_agreement(record_, bias_rad_s()), force = force_agreement(record_);
   if (gyro == Agreement::contradicts || force == Agreement::contradicts) return false;
-  const bool of_force = reason_ == Reason::sign || reason_ == Reason::strain;
-  if (of_force && now_ns_ - sign_ns_ < kSignEvery) return false;
+  if (sign_ == Agreement::contradicts) return false;
   switch (reason_) {
     case Reason::gyro:
       return gyro == Agreement::agrees;
     case Reason::force:
       return force == Agreement::agrees;
     default:
-      return force == Agreement::agrees && sign() == Agreement::agrees;
+      return force == Agreement::agrees && sign_ == Agreement::agrees;
   }
 }
 

@@ -198,6 +198,20 @@ TEST(ImuTrust, StrainAtFramesThatAreTooRareToJudgeHarmsNothing) {
   EXPECT_EQ(played.trust.believed(), nullptr);  // nothing bears it out
 }
 
+TEST(ImuTrust, RareFramesThatAreNotFoundWhereItLeadsContradictIt) {
+  for (const double frame_hz : {15.0, 2.0}) {
+    Played played(looking_about);
+    played.frame_hz = frame_hz;
+    played.go(3);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NE(played.trust.believed(), nullptr);
+      played.trust.saw(kStart + from_seconds(played.t), {}, true);
+      played.t += 1 / frame_hz;
+    }
+    EXPECT_EQ(played.trust.believed() == nullptr, frame_hz < 3) << "by the frame before, frequent ones are found";
+  }
+}
+
 TEST(ImuTrust, APeriodicMotionIsNoOffsetOfClocks) {
   for (const Path path : {Path(swaying<1000>), Path(swaying<1600>), Path(swaying<2400>)}) {
     Played played(path);

@@ -23,8 +23,8 @@ enum class Agreement { unknown, agrees, contradicts };
 [[nodiscard]] std::optional<double> gyro_factor(const MotionRecord& record);
 
 /// By how much the IMU's stamps are ahead of the frames', up to three seconds either way: where the rotations
-/// of the last seconds fit best; empty: no place is right, or not more so than 0, or another is as right (the motion repeats
-/// itself).
+/// of the last seconds fit best; empty: no place is right, or not more so than 0, or another is as right (the
+/// motion repeats itself).
 [[nodiscard]] std::optional<StampNs> stamps_ahead_ns(const MotionRecord& record);
 
 }  // namespace liloc

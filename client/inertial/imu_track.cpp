@@ -24,9 +24,9 @@ constexpr double kMostRate = 50, kMostForce = 320;
 constexpr StampNs kWildFor = from_ms(3000);  // it is told; by hand
 // No samples for so long are told; a clipped one leaves the IMU out for so long. By hand.
 constexpr StampNs kSilent = from_ms(500), kClippedFor = from_ms(3000);
-constexpr StampNs kHalvesFor = from_ms(500);                    // is no hiccup; by hand
-constexpr StampNs kStale = from_ms(150);  // of a force that is repeated: at 10 Hz one is missing; by hand
-constexpr double kMostGravityOff = 2.5;   // m/s^2, as ImuTrust bears; by hand
+constexpr StampNs kHalvesFor = from_ms(500);  // is no hiccup; by hand
+constexpr StampNs kStale = from_ms(150);      // of a force that is repeated: at 10 Hz one is missing; by hand
+constexpr double kMostGravityOff = 2.5;       // m/s^2, as ImuTrust bears; by hand
 constexpr double kDoubtTimeConstantS = 0.5, kDoubtSdRad = 0.3;  // of "up" in that time; by hand
 // Samples of context for the filters on either side of a span; six standard deviations of the Gaussian filter.
 constexpr int kMargin = 12;
@@ -138,7 +138,8 @@ bool ImuTrack::merge(ImuSample& sample) {
 void ImuTrack::take_off(StampNs ahead_ns) {
   ahead_ns_ += ahead_ns;
   for (Entry& entry : entries_) entry.raw.stamp_ns -= ahead_ns;
-  for (StampNs* stamp : {&first_ns_, &clipped_ns_, &wild_ns_, &halves_.force_ns, &halves_.since_ns, &halves_.newest_ns})
+  for (StampNs* stamp :
+       {&first_ns_, &clipped_ns_, &wild_ns_, &halves_.force_ns, &halves_.since_ns, &halves_.newest_ns})
     if (*stamp != 0) *stamp -= ahead_ns;
 }
 
@@ -176,7 +177,8 @@ Status ImuTrack::add(const ImuSample& given) {
   find_unit(sample);
   sample.specific_force_m_s2 *= unit_;
   if (clips(sample)) clipped_ns_ = sample.stamp_ns;
-  const bool stale = halves_.now && (halves_.force_ns == 0 || std::abs(sample.stamp_ns - halves_.force_ns) > kStale);
+  const bool stale =
+      halves_.now && (halves_.force_ns == 0 || std::abs(sample.stamp_ns - halves_.force_ns) > kStale);
   if (!std::exchange(started_, true)) {
     first_ns_ = sample.stamp_ns;
     gyro_now_ = sample.angular_velocity_rad_s;
@@ -247,7 +249,8 @@ bool ImuTrack::covers(StampNs from_ns, StampNs to_ns) const {
   if (entries_.size() < 2 || from_ns >= to_ns || doubtful(to_ns) || up_.isZero()) return false;
   const std::size_t begin = first_after(from_ns), end = first_after(to_ns);
   if (begin == 0 || end == 0) return false;
-  if (to_seconds(to_ns - entries_[end - 1].raw.stamp_ns) > kLargestGapS || entries_[end - 1].stale) return false;
+  if (to_seconds(to_ns - entries_[end - 1].raw.stamp_ns) > kLargestGapS || entries_[end - 1].stale)
+    return false;
   for (std::size_t i = begin; i < end; ++i)
     if (to_seconds(entries_[i].raw.stamp_ns - entries_[i - 1].raw.stamp_ns) > kLargestGapS || entries_[i].stale)
       return false;

@@ -9,13 +9,13 @@
 namespace liloc {
 namespace {
 
-constexpr StampNs kStep = from_ms(60);          // over which rotations are compared
+constexpr StampNs kStep = from_ms(60);           // over which rotations are compared
 constexpr StampNs kLongestStep = from_ms(1500);  // one frame a second, or a little less
 // Frames farther apart are matched where the IMU says alone: so many in a row that are not contradict it.
 constexpr StampNs kRare = from_ms(400);
 constexpr int kUnmatched = 3;
-constexpr StampNs kEvery = from_ms(1000);       // an explanation is sought
-constexpr StampNs kSignEvery = from_ms(400);    // the force's sign is compared: it takes seconds to show
+constexpr StampNs kEvery = from_ms(1000);     // an explanation is sought
+constexpr StampNs kSignEvery = from_ms(400);  // the force's sign is compared: it takes seconds to show
 constexpr StampNs kMostCorrected = from_ms(1000), kSameOffset = from_ms(30);
 constexpr StampNs kFar = from_ms(1000);  // no network delays the one or the other by so much
 constexpr StampNs kLongestRetry = from_ms(60'000);

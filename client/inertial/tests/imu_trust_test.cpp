@@ -25,8 +25,8 @@ Pose looking_about(double t) {
 }
 /// A robot that drives slow curves on a level floor.
 Pose level(double t) {
-  return scene::looking({3 + 0.7 * std::sin(0.4 * t), 2.5 + 0.5 * std::sin(0.55 * t), 0.4}, 0.5 * std::sin(0.35 * t),
-                        0);
+  return scene::looking({3 + 0.7 * std::sin(0.4 * t), 2.5 + 0.5 * std::sin(0.55 * t), 0.4},
+                        0.5 * std::sin(0.35 * t), 0);
 }
 /// Turns to and fro, `PeriodMs` long.
 template <int PeriodMs>
@@ -163,7 +163,8 @@ TEST_P(InvertedForce, IsNamedAndTakenAgainOnlyWhenItIsRight) {
   EXPECT_EQ(played.wrong_ups, wrong_ups);
 }
 INSTANTIATE_TEST_SUITE_P(Moves, InvertedForce,
-                         testing::Combine(testing::Values(looking_about, level), testing::Values(15.0, 5.0, 2.0, 1.0)));
+                         testing::Combine(testing::Values(looking_about, level),
+                                          testing::Values(15.0, 5.0, 2.0, 1.0)));
 
 TEST(ImuTrust, StrainIsNotForgivenByTimeAlone) {
   Played played(standing);
@@ -208,7 +209,8 @@ TEST(ImuTrust, RareFramesThatAreNotFoundWhereItLeadsContradictIt) {
       played.trust.saw(kStart + from_seconds(played.t), {}, true);
       played.t += 1 / frame_hz;
     }
-    EXPECT_EQ(played.trust.believed() == nullptr, frame_hz < 3) << "by the frame before, frequent ones are found";
+    EXPECT_EQ(played.trust.believed() == nullptr, frame_hz < 3)
+        << "by the frame before, frequent ones are found";
   }
 }
 

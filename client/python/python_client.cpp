@@ -64,8 +64,8 @@ struct PythonClient::Feed {
   std::mutex mutex;
   std::condition_variable fresh;
   PoseUpdate newest;
-  std::deque<std::int64_t> stamps_ns, stamps_before_ns;  ///< of the newest frames, and of those before the clock
-                                                         ///< was set back
+  std::deque<std::int64_t> stamps_ns, stamps_before_ns;  ///< of the newest frames, and of those before the
+                                                         ///< clock was set back
 
   void take(const PoseUpdate& update) {
     {

@@ -218,9 +218,10 @@ bool Session::Impl::follows(const SpotReply& reply) {
   std::unique_lock lock(servers_mutex);
   if (!open.answered_by(reply)) {
     lock.unlock();
-    report.samples_refused(&SessionStats::replies_strange, 1,
-                           fmt::format("a reply of {} to request {}, which was not sent, or too long ago, is dropped",
-                                       reply.server_id, reply.seq));
+    report.samples_refused(
+        &SessionStats::replies_strange, 1,
+        fmt::format("a reply of {} to request {}, which was not sent, or too long ago, is dropped",
+                    reply.server_id, reply.seq));
     return false;
   }
   const std::string before = servers.followed();

@@ -133,18 +133,19 @@ TEST_P(RareFrames, AreHardlyWorseThanWithoutAnImu) {
     device->frame_hz = frame_hz;
     device->go(30, right);
   }
-  // Until it is noticed it leads the device away; at that rate even registration alone loses its way now and then.
+  // Until it is noticed it leads the device away; at that rate even registration alone loses its way now and
+  // then.
   EXPECT_LE(with.wrong, without.wrong + with.frames / 4) << "of " << with.frames;
   EXPECT_THAT(with.engine.problem(), HasSubstr(fault.says));
 }
-INSTANTIATE_TEST_SUITE_P(
-    By, RareFrames,
-    testing::Combine(testing::Values(1.0, 2.0),
-                     testing::Values(Fault{"degrees_per_second", degrees_per_second, "left out"},
-                                     Fault{"mirrored", mirrored, "left out"})),
-    [](const auto& tested) {
-      return std::string(std::get<1>(tested.param).name) + std::to_string(tested.index);
-    });
+INSTANTIATE_TEST_SUITE_P(By, RareFrames,
+                         testing::Combine(testing::Values(1.0, 2.0),
+                                          testing::Values(Fault{"degrees_per_second", degrees_per_second,
+                                                                "left out"},
+                                                          Fault{"mirrored", mirrored, "left out"})),
+                         [](const auto& tested) {
+                           return std::string(std::get<1>(tested.param).name) + std::to_string(tested.index);
+                         });
 
 class ShiftedImu : public testing::TestWithParam<double> {};
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "client/api/c_api_handle.hpp"
+#include "common/base/log.hpp"
 
 using namespace liloc;
 using namespace liloc::client;
@@ -192,8 +193,8 @@ liloc_status liloc_client_destroy(liloc_client* client) {
   return guarded([&] {
     if (client == nullptr) return LILOC_OK;
     if (in_callback()) return refuse_in_callback("liloc_client_destroy");
-    const liloc_status stopped = stop(*client);
+    if (stop(*client) != LILOC_OK) liloc::log::error("{}", last_error());
     delete client;
-    return stopped;
+    return LILOC_OK;
   });
 }

@@ -30,6 +30,11 @@ void set_log(LogCallback callback) {
 
 /// Members go from the last to the first: the link, the dispatcher with its thread, then the session it calls.
 struct Client::Impl {
+  /// A frame that does not even come to the session.
+  Outcome<Taken> unusable(const std::string& why) {
+    session->refuse_frame(why);
+    return Outcome<Taken>::failed(fmt::format("{}: {}", id, why));
+  }
   Status connect(const Options& options);
   void look();
   Status stop();
@@ -123,9 +128,10 @@ Outcome<std::unique_ptr<Client>> Client::create(const Options& options, PoseCall
 
 Outcome<Taken> Client::push_depth(const std::uint16_t* units, int width, int height, std::int64_t stamp_ns) {
   DepthImage image;
-  if (units == nullptr || width != impl_->camera.width || height != impl_->camera.height)
-    return Outcome<Taken>::failed(fmt::format("{}: depth image is {}x{}, options.camera is {}x{}", impl_->id,
-                                              width, height, impl_->camera.width, impl_->camera.height));
+  if (units == nullptr) return impl_->unusable("depth image at NULL");
+  if (width != impl_->camera.width || height != impl_->camera.height)
+    return impl_->unusable(fmt::format("depth image is {}x{}, options.camera is {}x{}", width, height,
+                                       impl_->camera.width, impl_->camera.height));
   image.stamp_ns = stamp_ns;
   image.width = width;
   image.height = height;
@@ -133,10 +139,14 @@ Outcome<Taken> Client::push_depth(const std::uint16_t* units, int width, int hei
   return to_public(impl_->session->push_depth(std::move(image)));
 }
 
+void Client::push_unusable(const std::string& why) {
+  impl_->session->refuse_frame(why);
+}
+
 Outcome<Taken> Client::push_points(const float* xyz, std::size_t count, std::int64_t stamp_ns) {
   if (xyz == nullptr || count > kMostPoints)
-    return Outcome<Taken>::failed(fmt::format("{}: {} points{}; pass up to {}", impl_->id, count,
-                                              xyz == nullptr ? " at NULL" : "", kMostPoints));
+    return impl_->unusable(
+        fmt::format("{} points{}; pass up to {}", count, xyz == nullptr ? " at NULL" : "", kMostPoints));
   Cloud cloud;
   cloud.points.reserve(count);
   for (std::size_t i = 0; i < count; ++i) cloud.points.emplace_back(xyz + 3 * i);

@@ -48,9 +48,9 @@ void SensorFeed::complain(const std::string& what) {
 }
 
 void SensorFeed::take_depth(const Result<DepthImage>& image) {
-  if (!image) return complain(image.error().message);
-  const auto taken = client_.push_depth(image->units.data(), image->width, image->height, image->stamp_ns);
-  if (!taken) complain(taken.error());
+  if (!image) return client_.push_unusable(image.error().message);
+  // What is refused the client counts and tells.
+  static_cast<void>(client_.push_depth(image->units.data(), image->width, image->height, image->stamp_ns));
 }
 
 void SensorFeed::take_imu(const Result<ImuSample>& sample) {
@@ -61,11 +61,10 @@ void SensorFeed::take_imu(const Result<ImuSample>& sample) {
 }
 
 void SensorFeed::take_points(const Result<wire::StampedCloud>& cloud) {
-  if (!cloud) return complain(cloud.error().message);
+  if (!cloud) return client_.push_unusable(cloud.error().message);
   const auto& points = cloud->cloud_sensor.points;
-  if (points.empty()) return complain("a cloud without a finite point");
-  const auto taken = client_.push_points(points.front().data(), points.size(), cloud->stamp_ns);
-  if (!taken) complain(taken.error());
+  if (points.empty()) return client_.push_unusable("a cloud without a finite point");
+  static_cast<void>(client_.push_points(points.front().data(), points.size(), cloud->stamp_ns));
 }
 
 void SensorFeed::take_odometry(const Result<wire::StampedOdometry>& odometry) {

@@ -74,7 +74,7 @@ struct Engine::Impl {
   /// What the frame shows: `points`, or what `camera` measured.
   [[nodiscard]] Result<Cloud> cloud_of(const DepthImage& image, const Camera& camera,
                                        const Cloud* points) const;
-  void judge_imu(StampNs stamp_ns, const OdometryStep& step);
+  void judge_imu(StampNs stamp_ns, const Placed& placed);
   void note_motion(StampNs stamp_ns, const Placed& placed);
   void ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed);
 
@@ -118,7 +118,7 @@ void Engine::Impl::set_clock_back(StampNs by_ns) {
   doubt.clock_set(by_ns);
   odometry.clock_set();
   if (external) external->frames_clock_set();
-  if (imu) imu->frames_clock_set();
+  if (imu) imu->frames_clock_set(by_ns);
   set_back_ns = last_ns + by_ns;
   set_back_by_ns = -by_ns;
 }
@@ -165,13 +165,14 @@ Result<Placed> Engine::Impl::place(const DepthImage& image, const Cloud* points,
 
 /// What registration measured from one frame to the next counts alone: not guesses, nor who may follow
 /// somebody.
-void Engine::Impl::judge_imu(StampNs stamp_ns, const OdometryStep& step) {
+void Engine::Impl::judge_imu(StampNs stamp_ns, const Placed& placed) {
+  const OdometryStep& step = placed.step;
   const bool measured = !external && step.overlap > 0 && step.converged && !step.doubtful &&
                         !step.discontinuous && step.observed.head<3>().minCoeff() > kSeenRotation;
-  std::optional<Eigen::Matrix3d> R_odom_imu;
-  if (measured) R_odom_imu = step.T_odom_sensor.linear() * options.T_imu_sensor->linear().transpose();
+  std::optional<Pose> T_odom_imu;
+  if (measured) T_odom_imu = step.T_odom_sensor * options.T_imu_sensor->inverse();
   const bool believed = imu->believed() != nullptr;
-  imu->saw(stamp_ns, R_odom_imu);
+  imu->saw(stamp_ns, T_odom_imu, !external && placed.informative && step.source == PoseSource::guess);
   if (inputs.contradicted()) imu->strained();
   if (believed && imu->believed() == nullptr) inputs.forget();
 }
@@ -227,7 +228,7 @@ Result<FrameResult> Engine::Impl::add(const DepthImage& image, const Cloud* poin
   frame.residual_m = step.residual_m;
   frame.observed = step.observed;
   inputs.note(spread.fault, step.residual_m, step.strain);
-  if (imu) judge_imu(image.stamp_ns, step);
+  if (imu) judge_imu(image.stamp_ns, *placed);
   doubt.travelled(
       image.stamp_ns, step, requests.motion_sd(),
       {inputs.contradicted(), !external && placed->informative && step.source == PoseSource::guess});

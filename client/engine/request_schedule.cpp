@@ -28,9 +28,8 @@ bool RequestSchedule::due(StampNs stamp_ns, bool informative, bool sure) {
   }
   const bool interval_over = !last_ns_ || stamp_ns - *last_ns_ >= options_.interval_ns - kSlack;
   const bool hurried = !located_ && hurried_ns_ && stamp_ns >= *hurried_ns_ - kSlack;
-  const bool sure_again =
-      sure && after_doubt_ && last_ns_ && stamp_ns - *last_ns_ >= options_.searching_interval_ns - kSlack;
-  if (!interval_over && !after_gap_ && !hurried && !sure_again) return false;
+  const bool soon = !last_ns_ || stamp_ns - *last_ns_ >= options_.searching_interval_ns - kSlack;
+  if (!interval_over && !hurried && !(soon && (after_gap_ || (sure && after_doubt_)))) return false;
   after_gap_ = false;
   if (sure) after_doubt_ = false;
   hurried_ns_.reset();

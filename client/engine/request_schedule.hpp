@@ -16,7 +16,8 @@ struct RequestScheduleOptions {
 };
 
 /// When the next global registration is due, by the stamps of the frames alone (paper, section 5.3): at the
-/// first usable frame, then every interval, and at once after a stretch of non-informative frames.
+/// first usable frame, then every interval, and after a stretch of non-informative frames as soon as the
+/// lower bound allows.
 ///
 /// While nothing is verified, an answer brings the next request forward, so that several spots are there soon:
 /// one interval long in quick succession, then at gaps that double up to the interval. At least as much time

@@ -13,14 +13,18 @@ enum class Agreement { unknown, agrees, contradicts };
 /// Of the specific force with gravity: its mean over seconds, turned as registration saw it, is as large, and
 /// stays where it is.
 [[nodiscard]] Agreement force_agreement(const MotionRecord& record);
-/// That mean, odometry axes; empty: not enough was seen and felt.
+/// Of the force's sign with the accelerations that were seen: an inverted accelerometer feels as much gravity,
+/// which stays where it is as well. Unknown where the device hardly accelerated.
+[[nodiscard]] Agreement sign_agreement(const MotionRecord& record);
+/// The mean of `force_agreement`, odometry axes; empty: not enough was seen and felt.
 [[nodiscard]] std::optional<Eigen::Vector3d> mean_force_m_s2(const MotionRecord& record);
 
 /// By how much the gyro's rates are larger than what was seen; empty: they are no multiple of it.
 [[nodiscard]] std::optional<double> gyro_factor(const MotionRecord& record);
 
 /// By how much the IMU's stamps are ahead of the frames', up to three seconds either way: where the rotations
-/// of the last seconds fit best; empty: no place is right, or not more so than 0.
+/// of the last seconds fit best; empty: no place is right, or not more so than 0, or another is as right (the
+/// motion repeats itself).
 [[nodiscard]] std::optional<StampNs> stamps_ahead_ns(const MotionRecord& record);
 
 }  // namespace liloc

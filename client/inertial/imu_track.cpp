@@ -24,7 +24,9 @@ constexpr double kMostRate = 50, kMostForce = 320;
 constexpr StampNs kWildFor = from_ms(3000);  // it is told; by hand
 // No samples for so long are told; a clipped one leaves the IMU out for so long. By hand.
 constexpr StampNs kSilent = from_ms(500), kClippedFor = from_ms(3000);
-constexpr StampNs kHalvesFor = from_ms(500);                    // is no hiccup; by hand
+constexpr StampNs kHalvesFor = from_ms(500);  // is no hiccup; by hand
+constexpr StampNs kStale = from_ms(150);      // of a force that is repeated: at 10 Hz one is missing; by hand
+constexpr double kMostGravityOff = 2.5;       // m/s^2, as ImuTrust bears; by hand
 constexpr double kDoubtTimeConstantS = 0.5, kDoubtSdRad = 0.3;  // of "up" in that time; by hand
 // Samples of context for the filters on either side of a span; six standard deviations of the Gaussian filter.
 constexpr int kMargin = 12;
@@ -33,7 +35,7 @@ constexpr int kMargin = 12;
 
 /// Some drivers send g, some convert twice. Nothing that lies on a table or is carried feels 1 m/s^2, or 10 g.
 void ImuTrack::find_unit(const ImuSample& sample) {
-  if (raw_count_ >= kUnitSamples) return;
+  if (raw_count_ >= kUnitSamples || sample.specific_force_m_s2.isZero()) return;
   raw_force_sum_ += sample.specific_force_m_s2.norm();
   if (++raw_count_ < kUnitSamples) return;
   const double mean = raw_force_sum_ / raw_count_;
@@ -45,16 +47,22 @@ void ImuTrack::find_unit(const ImuSample& sample) {
   for (Entry& entry : entries_) entry.raw.specific_force_m_s2 *= unit_;
   force_now_ *= unit_;
   force_sum_ *= unit_;
+  if (calibrated()) gravity_m_s2_ *= unit_;
 }
 
 bool ImuTrack::clips(const ImuSample& sample) const {
   if (entries_.empty()) return false;
   const ImuSample& last = entries_.back().raw;
   for (int axis = 0; axis < 3; ++axis) {
-    const double w = sample.angular_velocity_rad_s[axis], f = sample.specific_force_m_s2[axis];
+    const double w = sample.angular_velocity_rad_s[axis];
     if (std::abs(w) > kLargeRate && w == last.angular_velocity_rad_s[axis]) return true;
-    if (std::abs(f) > kLargeForce && f == last.specific_force_m_s2[axis]) return true;
   }
+  return !halves_.now && force_clips(sample.specific_force_m_s2, last.specific_force_m_s2);
+}
+
+bool ImuTrack::force_clips(const Eigen::Vector3d& force, const Eigen::Vector3d& last) const {
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(force[axis]) > kLargeForce && force[axis] == last[axis]) return true;
   return false;
 }
 
@@ -69,11 +77,17 @@ std::string ImuTrack::problem(StampNs now_ns) const {
   if (entries_.empty()) return "no IMU samples come";
   if (now_ns - entries_.back().raw.stamp_ns > kSilent)
     return fmt::format("no IMU samples for {:.1f} s", to_seconds(now_ns - entries_.back().raw.stamp_ns));
+  const bool halves =
+      halves_.newest_ns - halves_.since_ns >= kHalvesFor && now_ns - halves_.newest_ns <= kHalvesFor;
+  if (halves && stale()) {
+    if (halves_.force_ns == 0) return "the accelerometer sends nothing but zeros";
+    return fmt::format("the accelerometer has stopped: no force for {:.1f} s",
+                       to_seconds(entries_.back().raw.stamp_ns - halves_.force_ns));
+  }
   if (doubtful(now_ns)) return "the IMU is at the end of its range";
   if (unit_ > 1) return "the IMU sends g in place of m/s^2 (corrected)";
   if (unit_ < 1) return "the accelerometer's numbers are 9.81 times too large (corrected)";
-  if (halves_.newest_ns - halves_.since_ns < kHalvesFor || now_ns - halves_.newest_ns > kHalvesFor) return "";
-  if (halves_.force_m_s2.isZero()) return "the accelerometer sends nothing but zeros";
+  if (!halves) return "";
   return "the IMU sends gyro and accelerometer in messages of their own, with zeros for the other (merged)";
 }
 
@@ -96,21 +110,24 @@ void ImuTrack::set_clock(StampNs by_ns) {
   if (by_ns < 0) log::warning("IMU: its clock was set back by {:.1f} s", -to_seconds(by_ns));
   entries_.clear();
   first_ns_ += by_ns;
-  clipped_ns_ = wild_ns_ = 0;
+  clipped_ns_ = wild_ns_ = halves_.force_ns = 0;
 }
 
 /// Drivers with a message for each sensor fill the other's part with zeros, which no accelerometer measures:
 /// such a sample gets the newest force. False: it was an accelerometer's, and that is all it tells.
 bool ImuTrack::merge(ImuSample& sample) {
   Halves& h = halves_;
+  const StampNs stamp_ns = sample.stamp_ns - ahead_ns_;
   if (!sample.specific_force_m_s2.isZero()) {
     const bool half = h.now && sample.angular_velocity_rad_s.isZero();
-    if (unit_ * sample.specific_force_m_s2.cwiseAbs().maxCoeff() <= kMostForce)
+    if (unit_ * sample.specific_force_m_s2.cwiseAbs().maxCoeff() <= kMostForce) {
+      if (half && force_clips(unit_ * sample.specific_force_m_s2, unit_ * h.force_m_s2)) clipped_ns_ = stamp_ns;
       h.force_m_s2 = sample.specific_force_m_s2;
-    h.now = half;
+      h.force_ns = stamp_ns;
+    }
+    if (!half) h.now = false;
     return !half;
   }
-  const StampNs stamp_ns = sample.stamp_ns - ahead_ns_;
   if (stamp_ns < h.newest_ns || stamp_ns - h.newest_ns > kHalvesFor) h.since_ns = stamp_ns;
   h.newest_ns = stamp_ns;
   h.now = true;
@@ -121,7 +138,8 @@ bool ImuTrack::merge(ImuSample& sample) {
 void ImuTrack::take_off(StampNs ahead_ns) {
   ahead_ns_ += ahead_ns;
   for (Entry& entry : entries_) entry.raw.stamp_ns -= ahead_ns;
-  for (StampNs* stamp : {&first_ns_, &clipped_ns_, &wild_ns_, &halves_.since_ns, &halves_.newest_ns})
+  for (StampNs* stamp :
+       {&first_ns_, &clipped_ns_, &wild_ns_, &halves_.force_ns, &halves_.since_ns, &halves_.newest_ns})
     if (*stamp != 0) *stamp -= ahead_ns;
 }
 
@@ -129,6 +147,8 @@ void ImuTrack::begin_anew(const Eigen::Vector3d& bias_rad_s, const Eigen::Vector
   calibrating_ = false;
   calibrated_s_ = 0;
   bias_ = bias_rad_s;
+  // Calibrated from numbers in another unit it was none.
+  if (std::abs(gravity_m_s2_ - kStandardGravity) > kMostGravityOff) gravity_m_s2_ = kStandardGravity;
   up_ = up_imu.isZero() ? force_now_.stableNormalized() : up_imu;
   Eigen::Vector3d up = up_;
   for (std::size_t i = entries_.size(); i-- > 0;) {
@@ -157,6 +177,8 @@ Status ImuTrack::add(const ImuSample& given) {
   find_unit(sample);
   sample.specific_force_m_s2 *= unit_;
   if (clips(sample)) clipped_ns_ = sample.stamp_ns;
+  const bool stale =
+      halves_.now && (halves_.force_ns == 0 || std::abs(sample.stamp_ns - halves_.force_ns) > kStale);
   if (!std::exchange(started_, true)) {
     first_ns_ = sample.stamp_ns;
     gyro_now_ = sample.angular_velocity_rad_s;
@@ -167,8 +189,8 @@ Status ImuTrack::add(const ImuSample& given) {
   gyro_now_ += kQuick * (sample.angular_velocity_rad_s - gyro_now_);
   force_now_ += kQuick * (sample.specific_force_m_s2 - force_now_);
   if (calibrating_) calibrate(sample);
-  if (!calibrating_) follow(sample, dt);
-  entries_.push_back({sample, up_});
+  if (!calibrating_) follow(sample, dt, stale);
+  entries_.push_back({sample, up_, stale});
   while (to_seconds(sample.stamp_ns - entries_.front().raw.stamp_ns) > options_.keep_seconds)
     entries_.pop_front();
   return {};
@@ -207,12 +229,12 @@ void ImuTrack::end_calibration(const char* why) {
 }
 
 /// "Up" turns against the device; a force that is nearly gravity draws it in slowly.
-void ImuTrack::follow(const ImuSample& sample, double dt_s) {
+void ImuTrack::follow(const ImuSample& sample, double dt_s, bool stale) {
   const double gravity_off = std::abs(force_now_.norm() - gravity_m_s2_);
   up_ = so3_exp(-dt_s * (sample.angular_velocity_rad_s - bias_)) * up_;
   const bool doubt = doubtful(sample.stamp_ns);
   const double time_constant_s = doubt ? kDoubtTimeConstantS : options_.up_time_constant_s;
-  if (gravity_off < (doubt ? 3 : 1) * options_.up_gate_m_s2)
+  if (!stale && gravity_off < (doubt ? 3 : 1) * options_.up_gate_m_s2)
     up_ += std::min(1.0, dt_s / time_constant_s) * (sample.specific_force_m_s2.stableNormalized() - up_);
   up_ = up_.stableNormalized();
 }
@@ -227,9 +249,11 @@ bool ImuTrack::covers(StampNs from_ns, StampNs to_ns) const {
   if (entries_.size() < 2 || from_ns >= to_ns || doubtful(to_ns) || up_.isZero()) return false;
   const std::size_t begin = first_after(from_ns), end = first_after(to_ns);
   if (begin == 0 || end == 0) return false;
-  if (to_seconds(to_ns - entries_[end - 1].raw.stamp_ns) > kLargestGapS) return false;
+  if (to_seconds(to_ns - entries_[end - 1].raw.stamp_ns) > kLargestGapS || entries_[end - 1].stale)
+    return false;
   for (std::size_t i = begin; i < end; ++i)
-    if (to_seconds(entries_[i].raw.stamp_ns - entries_[i - 1].raw.stamp_ns) > kLargestGapS) return false;
+    if (to_seconds(entries_[i].raw.stamp_ns - entries_[i - 1].raw.stamp_ns) > kLargestGapS || entries_[i].stale)
+      return false;
   return true;
 }
 
@@ -283,7 +307,7 @@ std::optional<Eigen::Vector3d> ImuTrack::up(StampNs stamp_ns) const {
   const std::size_t after = first_after(stamp_ns);
   const Entry& e = entries_[after == 0 ? 0 : after - 1];
   const double off_s = to_seconds(stamp_ns - e.raw.stamp_ns);
-  if (std::abs(off_s) > kUpReachS || e.up.isZero()) return std::nullopt;
+  if (std::abs(off_s) > kUpReachS || e.up.isZero() || e.stale) return std::nullopt;
   const double dt = std::clamp(off_s, 0.0, kLargestGapS);
   return so3_exp(-dt * (e.raw.angular_velocity_rad_s - bias_)) * e.up;
 }

@@ -35,6 +35,8 @@ class ImuTrack {
 
   /// The stamps so far, and from now on, are ahead by so much: it is taken off.
   void take_off(StampNs ahead_ns);
+  /// The newest sample's force is an older message's, as no newer ones come.
+  [[nodiscard]] bool stale() const { return !entries_.empty() && entries_.back().stale; }
   /// What was known of bias and gravity is replaced; `up_imu`: at the newest sample, zero where it is not
   /// known.
   void begin_anew(const Eigen::Vector3d& bias_rad_s, const Eigen::Vector3d& up_imu);
@@ -77,9 +79,11 @@ class ImuTrack {
   struct Entry {
     ImuSample raw;
     Eigen::Vector3d up;
+    bool stale = false;  ///< its force is an older message's, which stopped coming
   };
   struct Halves {
     Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< newest that was told
+    StampNs force_ns = 0;                                  ///< its stamp; 0: none was told
     StampNs since_ns = 0, newest_ns = 0;                   ///< of samples with zeros for the accelerometer
     bool now = false;                                      ///< the newest sample was one
   };
@@ -88,10 +92,11 @@ class ImuTrack {
   void set_clock(StampNs by_ns);
   void find_unit(const ImuSample& sample);
   [[nodiscard]] bool clips(const ImuSample& sample) const;
+  [[nodiscard]] bool force_clips(const Eigen::Vector3d& force, const Eigen::Vector3d& last) const;
   [[nodiscard]] bool doubtful(StampNs stamp_ns) const;
   void calibrate(const ImuSample& sample);
   void end_calibration(const char* why);
-  void follow(const ImuSample& sample, double dt_s);
+  void follow(const ImuSample& sample, double dt_s, bool stale);
   [[nodiscard]] std::size_t first_after(StampNs stamp_ns) const;
   [[nodiscard]] std::vector<InertialSample> span(StampNs from_ns, StampNs to_ns, bool smooth) const;
 

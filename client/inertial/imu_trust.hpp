@@ -18,19 +18,22 @@ class ImuTrust {
   /// The samples, where they are believed; null otherwise.
   [[nodiscard]] ImuTrack* believed() { return reason_ == Reason::none && !far() ? &track_ : nullptr; }
 
-  /// To be called for each frame; `R_odom_imu` where registration measured it in the axes of the one before.
-  void saw(StampNs stamp_ns, const std::optional<Eigen::Matrix3d>& R_odom_imu);
+  /// To be called for each frame; `T_odom_imu` where registration measured it in the axes of the one before.
+  /// `unmatched`: the frame shows enough, but was not found where the motion led.
+  void saw(StampNs stamp_ns, const std::optional<Pose>& T_odom_imu, bool unmatched = false);
   /// Predictions and matches contradict each other persistently: what the rotation does not show.
   void strained();
-  /// The clock of the frames was set.
-  void frames_clock_set();
+  /// The clock of the frames was set by so much.
+  void frames_clock_set(StampNs by_ns);
   /// What is wrong with the IMU as of the newest frame, for people; empty: nothing was noticed.
   [[nodiscard]] std::string problem() const;
 
  private:
-  enum class Reason { none, gyro, force, strain };
+  enum class Reason { none, strain, gyro, force, sign };  ///< what says more comes later
 
+  void count_unmatched(StampNs step_ns, bool measured, bool unmatched);
   void judge();
+  [[nodiscard]] Reason contradiction() const;
   void leave_out(Reason reason);
   void believe_again();
   void begin_anew();
@@ -45,14 +48,17 @@ class ImuTrust {
   MotionRecord record_;
   StampNs now_ns_ = 0;    ///< of the newest frame
   StampNs began_ns_ = 0;  ///< of the stretch that is being seen; 0: none
-  Eigen::Matrix3d R_odom_began_ = Eigen::Matrix3d::Identity();
+  Pose T_odom_began_ = Pose::Identity();
   StampNs ahead_ns_ = 0;                  ///< newest sample before the newest frame; negative: behind
   bool samples_come_ = false;             ///< since the frame before
   int far_frames_ = 0, late_frames_ = 0;  ///< in a row
+  int unmatched_ = 0;                     ///< likewise, of frames that are rare
   Reason reason_ = Reason::none;
   StampNs left_out_ns_ = 0, retry_ns_ = kFirstRetry;  ///< when, and after how long it is tried again
   std::optional<double> factor_;                      ///< of the gyro or the force, against what was seen
   StampNs explained_ns_ = 0;                          ///< when an explanation was sought last
+  Agreement sign_ = Agreement::unknown;               ///< of the force
+  StampNs sign_ns_ = 0;                               ///< when it was compared last
   std::optional<StampNs> offset_;                     ///< found then
   StampNs corrected_ns_ = 0;                          ///< taken off the stamps
 

@@ -7,8 +7,8 @@
 namespace liloc {
 namespace {
 
-constexpr StampNs kSeenFor = from_ms(8000);    // turns enough to tell clocks apart
-constexpr StampNs kFeltFor = from_ms(12'000);  // and three seconds on either side: ImuTrust's search
+constexpr StampNs kSeenFor = from_ms(14'000);  // twelve steps of one frame a second
+constexpr StampNs kFeltFor = from_ms(18'000);  // and three seconds on either side: ImuTrust's search
 
 }  // namespace
 

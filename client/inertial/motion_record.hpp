@@ -11,6 +11,7 @@ struct SeenStep {
   StampNs from_ns = 0, to_ns = 0;
   Eigen::Matrix3d R_odom_imu = Eigen::Matrix3d::Identity();  ///< at its end
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();      ///< mean, IMU axes
+  Eigen::Vector3d moved_m = Eigen::Vector3d::Zero();         ///< of the IMU, odometry axes
   [[nodiscard]] double seconds() const { return to_seconds(to_ns - from_ns); }
 };
 

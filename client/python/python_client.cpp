@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <thread>
 
 namespace liloc::client::python {
@@ -12,6 +13,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kSignalCheck = std::chrono::milliseconds(50);  // so that Ctrl-C ends a wait; by hand
 constexpr double kLongestWaitS = 1e6;                         // more would overflow the clock
+
+constexpr std::size_t kStampsKept = 64;  // who waits asks by the newest pose that it took; by hand
 
 thread_local int callbacks_deep = 0;
 
@@ -61,14 +64,24 @@ struct PythonClient::Feed {
   std::mutex mutex;
   std::condition_variable fresh;
   PoseUpdate newest;
+  std::deque<std::int64_t> stamps_ns, stamps_before_ns;  ///< of the newest frames, and of those before the
+                                                         ///< clock was set back
 
   void take(const PoseUpdate& update) {
     {
       const std::scoped_lock lock(mutex);
+      if (update.stamp_ns < newest.stamp_ns) stamps_before_ns = std::exchange(stamps_ns, {});
+      stamps_ns.push_back(update.stamp_ns);
+      if (stamps_ns.size() > kStampsKept) stamps_ns.pop_front();
       newest = update;
     }
     fresh.notify_all();
     call(on_pose, "liloc on_pose callback", update);
+  }
+  /// With the lock.
+  [[nodiscard]] bool newer_than(std::int64_t stamp_ns) const {
+    return newest.stamp_ns > stamp_ns ||
+           std::find(stamps_before_ns.begin(), stamps_before_ns.end(), stamp_ns) != stamps_before_ns.end();
   }
 };
 
@@ -165,7 +178,7 @@ std::optional<PoseUpdate> PythonClient::wait(std::int64_t stamp_ns, double timeo
   const std::shared_ptr<Feed> feed = feed_;
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(std::min(timeout_s, kLongestWaitS)));
-  const auto newer = [&] { return feed->newest.stamp_ns > stamp_ns; };
+  const auto newer = [&] { return feed->newer_than(stamp_ns); };
   while (true) {
     {
       const py::gil_scoped_release unlocked;

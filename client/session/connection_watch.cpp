@@ -63,34 +63,37 @@ std::string ConnectionWatch::answers_problem(const SessionStats& stats, bool con
                      name_of(stats.newest_refusal), names_.network, remedy(stats.newest_refusal));
 }
 
-void ConnectionWatch::tell(Told& told, std::string problem, Time now) const {
+std::string ConnectionWatch::tell(Told& told, std::string problem, Time now) {
   told.problem = std::move(problem);
-  if (told.problem.empty() || (told.once && now - told.at < kAgain)) return;
+  if (told.problem.empty() || (told.once && now - told.at < kAgain)) return "";
   told.once = true;
   told.at = now;
-  log::warning("{}: {}", names_.client_id, told.problem);
+  return told.problem;
 }
 
-void ConnectionWatch::tell_server(bool connected, Time now) {
-  if (connected == connected_ || now - told_server_at_ < kServerAgain) return;
+bool ConnectionWatch::server_changed(bool connected, Time now) {
+  if (connected == connected_ || now - told_server_at_ < kServerAgain) return false;
   connected_ = connected;
   told_server_at_ = now;
-  if (connected)
-    log::info("{}: the server is there", names_.client_id);
-  else
-    log::warning("{}: the server is gone; the device goes on by itself", names_.client_id);
+  return true;
 }
 
 void ConnectionWatch::look(const SessionStats& stats, bool connected, Time now) {
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   const std::uint64_t arrived =
       stats.frames + stats.frames_dropped + stats.frames_refused + stats.frames_skipped;
   if (arrived != arrived_) arrived_at_ = now;
   arrived_ = arrived;
   if (connected) connected_at_ = now;
-  tell_server(connected, now);
-  tell(frames_, frames_problem(now), now);
-  tell(answers_, answers_problem(stats, connected, now), now);
+  const bool changed = server_changed(connected, now);
+  const std::string lines[] = {tell(frames_, frames_problem(now), now),
+                               tell(answers_, answers_problem(stats, connected, now), now)};
+  lock.unlock();
+  if (changed && connected) log::info("{}: the server is there", names_.client_id);
+  if (changed && !connected)
+    log::warning("{}: the server is gone; the device goes on by itself", names_.client_id);
+  for (const std::string& line : lines)
+    if (!line.empty()) log::warning("{}: {}", names_.client_id, line);
 }
 
 std::string ConnectionWatch::no_frames() const {

@@ -7,7 +7,8 @@
 
 namespace liloc {
 
-/// Notices that nothing arrives: no frames, no server, nothing but refusals. Thread-safe.
+/// Notices that nothing arrives: no frames, no server, nothing but refusals. Thread-safe; who hears a line may
+/// ask.
 class ConnectionWatch {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -32,10 +33,11 @@ class ConnectionWatch {
     Time at{};
     bool once = false;  ///< `at` is set
   };
-  void tell(Told& told, std::string problem, Time now) const;
+  /// The line that is due, or none.
+  [[nodiscard]] static std::string tell(Told& told, std::string problem, Time now);
   [[nodiscard]] std::string frames_problem(Time now) const;
   [[nodiscard]] std::string answers_problem(const SessionStats& stats, bool connected, Time now) const;
-  void tell_server(bool connected, Time now);
+  [[nodiscard]] bool server_changed(bool connected, Time now);
 
   const Names names_;
   mutable std::mutex mutex_;

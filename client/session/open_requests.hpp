@@ -21,8 +21,8 @@ class OpenRequests {
   }
 
  private:
-  static constexpr std::size_t kKept =
-      64;  // 13 s of the quickest searching, longer than any answer is waited for
+  // 13 s of the default's quickest searching; what is answered later is of little use, whatever the timeout.
+  static constexpr std::size_t kKept = 64;
   struct Asked {
     std::uint64_t seq = 0;
     StampNs stamp_ns = 0;

@@ -194,27 +194,34 @@ void Session::Impl::send(SpotRequest request) {
   report.count(&SessionStats::requests_unsent);
 }
 
+// What is logged is logged without a lock here and below: who hears a line may ask for the stats.
+
 CloudCodec Session::Impl::choose_codec() {
-  const std::scoped_lock lock(servers_mutex);
+  std::unique_lock lock(servers_mutex);
   const CloudCodec before = std::exchange(codec, codecs.choose(servers.followed(), now()));
-  if (codec != before)
+  const CloudCodec chosen = codec;
+  lock.unlock();
+  if (chosen != before)
     log::warning("{}: clouds travel as {} in place of {}: that is what the servers in sight read", id(),
-                 name_of(codec), name_of(before));
-  return codec;
+                 name_of(chosen), name_of(before));
+  return chosen;
 }
 
 bool Session::Impl::follows(const SpotReply& reply) {
-  const std::scoped_lock lock(servers_mutex);
+  std::unique_lock lock(servers_mutex);
   if (!open.answered_by(reply)) {
+    lock.unlock();
     report.samples_refused(
         &SessionStats::replies_strange, 1,
-        fmt::format("a reply of {} to request {}, which was not sent, is dropped", reply.server_id, reply.seq));
+        fmt::format("a reply of {} to request {}, which was not sent, or too long ago, is dropped",
+                    reply.server_id, reply.seq));
     return false;
   }
   const std::string before = servers.followed();
   if (!servers.takes(reply)) return false;
-  if (!before.empty() && servers.followed() != before)
-    log::warning("{}: {} answers in place of {}", id(), servers.followed(), before);
+  lock.unlock();
+  if (!before.empty() && reply.server_id != before)
+    log::warning("{}: {} answers in place of {}", id(), reply.server_id, before);
   return true;
 }
 
@@ -268,6 +275,10 @@ Status Session::push_points(StampNs stamp_ns, Cloud cloud_sensor) {
   return impl_->push(std::move(frame));
 }
 
+void Session::refuse_frame(const std::string& why) {
+  if (!impl_->stopped) impl_->report.frame_refused(why);
+}
+
 Status Session::push_odometry(const OdometrySample& sample) {
   if (impl_->options.engine.local != LocalMethod::external)
     return fail("{}: odometry from outside, but options.local is another; set it to external", impl_->id());
@@ -308,10 +319,11 @@ void Session::reply_dropped(const std::string& why) {
 }
 
 void Session::namesake_heard() {
-  const std::scoped_lock lock(impl_->servers_mutex);
-  if (!impl_->namesake_at || now() - *impl_->namesake_at > kNamesakeTold)
-    log::warning("{}: {}", impl_->id(), impl_->namesake_problem());
-  impl_->namesake_at = now();
+  std::unique_lock lock(impl_->servers_mutex);
+  const auto before = std::exchange(impl_->namesake_at, now());
+  const bool again = before && *impl_->namesake_at - *before <= kNamesakeTold;
+  lock.unlock();
+  if (!again) log::warning("{}: {}", impl_->id(), impl_->namesake_problem());
 }
 
 std::optional<FrameResult> Session::newest_frame() const {

@@ -38,6 +38,9 @@ class Session {
   [[nodiscard]] Status push_depth(DepthImage image);
   /// A cloud in place of an image; the same queue. Errors: as above.
   [[nodiscard]] Status push_points(StampNs stamp_ns, Cloud cloud_sensor);
+  /// A frame came that cannot be used: counted, told, and the problem until the next one is taken; nothing once
+  /// stopped.
+  void refuse_frame(const std::string& why);
   /// Handed to the engine before the next frame, which waits a moment for it. Errors: the local method is not
   /// external, stopped, the stamp as above.
   [[nodiscard]] Status push_odometry(const OdometrySample& sample);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/base/log.hpp"
 #include "common/base/quantile.hpp"
 
 namespace liloc {
@@ -36,18 +35,24 @@ std::string without_figures(std::string problem) {
 
 }  // namespace
 
-void SessionReport::log_changes(Tracking tracking, const std::string& problem) const {
+void SessionReport::write(const Lines& lines) const {
+  for (const auto& [level, text] : lines) log::write(level, fmt::format("{}: {}", client_id_, text));
+}
+
+SessionReport::Lines SessionReport::changes(Tracking tracking, const std::string& problem) const {
+  Lines lines;
   if (!problem.empty() && without_figures(problem) != without_figures(stats_.problem))
-    log::warning("{}: {}", client_id_, problem);
+    lines.emplace_back(log::Level::warning, problem);
   if (tracking != tracking_)
-    log::write(
+    lines.emplace_back(
         tracking == Tracking::coasting || tracking == Tracking::lost ? log::Level::warning : log::Level::info,
-        fmt::format("{}: {}", client_id_, name_of(tracking)));
+        name_of(tracking));
+  return lines;
 }
 
 void SessionReport::frame(const FrameResult& frame, Tracking tracking, std::string problem) {
-  const std::scoped_lock lock(mutex_);
-  log_changes(tracking, problem);
+  std::unique_lock lock(mutex_);
+  const Lines lines = changes(tracking, problem);
   seen_ = std::chrono::steady_clock::now();
   refused_ = 0;
   tracking_ = tracking;
@@ -59,22 +64,26 @@ void SessionReport::frame(const FrameResult& frame, Tracking tracking, std::stri
   if (newest_ && frame.T_map_sensor)  // a pause is not counted in full
     stats_.localized_s += to_seconds(std::clamp<StampNs>(frame.stamp_ns - newest_->stamp_ns, 0, kLongestStep));
   newest_ = frame;
+  lock.unlock();
+  write(lines);
 }
 
-void SessionReport::tell(Counter what, const std::string& why) {
+SessionReport::Lines SessionReport::limited(Counter what, const std::string& why) {
   auto limit = std::ranges::find(limits_, what, &std::pair<Counter, LineLimit>::first);
   if (limit == limits_.end()) limit = limits_.insert(limit, {what, {}});
   const auto held = limit->second.pass(std::chrono::steady_clock::now());
-  if (!held) return;
-  log::warning("{}: {}{}", client_id_, why, *held > 0 ? fmt::format(" (and {} before)", *held) : "");
+  if (!held) return {};
+  return {{log::Level::warning, why + (*held > 0 ? fmt::format(" (and {} before)", *held) : "")}};
 }
 
 void SessionReport::frame_refused(const std::string& why) {
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   ++refused_;
   ++stats_.frames_refused;
   stats_.problem = why;
-  tell(&SessionStats::frames_refused, why);
+  const Lines lines = limited(&SessionStats::frames_refused, why);
+  lock.unlock();
+  write(lines);
 }
 
 void SessionReport::frame_skipped() {
@@ -84,15 +93,18 @@ void SessionReport::frame_skipped() {
 }
 
 void SessionReport::samples_refused(Counter what, std::uint64_t count, const std::string& why) {
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   stats_.*what += count;
-  tell(what, why);
+  const Lines lines = limited(what, why);
+  lock.unlock();
+  write(lines);
 }
 
 void SessionReport::trace_failed(const std::string& why) {
-  const std::scoped_lock lock(mutex_);
-  if (trace_problem_.empty()) log::error("{}: {}", client_id_, why);
-  trace_problem_ = why;
+  std::unique_lock lock(mutex_);
+  const bool first = std::exchange(trace_problem_, why).empty();
+  lock.unlock();
+  if (first) log::error("{}: {}", client_id_, why);
 }
 
 void SessionReport::ended() {
@@ -111,9 +123,7 @@ void SessionReport::reply(const SpotReply& reply) {
 }
 
 void SessionReport::reply_dropped(const std::string& why) {
-  const std::scoped_lock lock(mutex_);
-  ++stats_.replies_dropped;
-  tell(&SessionStats::replies_dropped, "reply dropped: " + why);
+  samples_refused(&SessionStats::replies_dropped, 1, "reply dropped: " + why);
 }
 
 void SessionReport::spent(double cpu_s) {

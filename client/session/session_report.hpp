@@ -7,6 +7,7 @@
 #include "client/engine/engine.hpp"
 #include "client/session/clock_estimator.hpp"
 #include "common/base/line_limit.hpp"
+#include "common/base/log.hpp"
 
 namespace liloc {
 
@@ -29,7 +30,7 @@ struct SessionStats {
 };
 
 /// Where a session stands and what it has done, for whoever asks; what changes for people goes to the log.
-/// Thread-safe.
+/// Thread-safe; who hears a line may ask.
 class SessionReport {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -62,9 +63,13 @@ class SessionReport {
   [[nodiscard]] SessionStats stats(Time now = std::chrono::steady_clock::now()) const;
 
  private:
-  void tell(Counter what, const std::string& why);
+  using Lines = std::vector<std::pair<log::Level, std::string>>;
+  /// Without the lock.
+  void write(const Lines& lines) const;
+  /// The line, or none where it was said a moment ago.
+  [[nodiscard]] Lines limited(Counter what, const std::string& why);
   [[nodiscard]] bool blind(Time now) const;
-  void log_changes(Tracking tracking, const std::string& problem) const;
+  [[nodiscard]] Lines changes(Tracking tracking, const std::string& problem) const;
 
   const std::string client_id_;
   mutable std::mutex mutex_;

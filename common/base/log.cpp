@@ -1,5 +1,6 @@
 #include "common/base/log.hpp"
 
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 
@@ -8,8 +9,32 @@
 namespace liloc::log {
 namespace {
 
-std::mutex mutex;
-std::shared_ptr<const Sink> current;
+struct Listener {
+  Sink sink;
+  int calls = 0;  ///< in flight
+};
+
+std::mutex mutex;  ///< guards what follows, and the counts of calls
+std::condition_variable returned;
+std::shared_ptr<Listener> current;
+thread_local int calls_deep = 0;
+
+/// While it lives the listener is in a call of this thread.
+class Call {
+ public:
+  explicit Call(Listener& listener) : listener_(listener) { ++calls_deep; }
+  ~Call() {
+    --calls_deep;
+    const std::scoped_lock lock(mutex);
+    --listener_.calls;
+    returned.notify_all();
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+ private:
+  Listener& listener_;
+};
 
 }  // namespace
 
@@ -22,17 +47,23 @@ Result<Level> level_from(std::string_view name) {
 }
 
 void set_sink(Sink sink) {
-  const std::scoped_lock lock(mutex);
-  current = sink ? std::make_shared<const Sink>(std::move(sink)) : nullptr;
+  auto next = sink ? std::make_shared<Listener>(Listener{std::move(sink)}) : nullptr;
+  std::unique_lock lock(mutex);
+  const auto before = std::exchange(current, std::move(next));
+  if (before && calls_deep == 0) returned.wait(lock, [&] { return before->calls == 0; });
+  lock.unlock();  // before what the sink held goes
 }
 
 void write(Level level, std::string_view line) {
-  std::shared_ptr<const Sink> sink;
+  std::shared_ptr<Listener> listener;
   {
     const std::scoped_lock lock(mutex);
-    sink = current;
+    if (!current) return;
+    listener = current;
+    ++listener->calls;
   }
-  if (sink) (*sink)(level, without_controls(line));
+  const Call call(*listener);
+  listener->sink(level, without_controls(line));
 }
 
 }  // namespace liloc::log

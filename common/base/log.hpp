@@ -15,8 +15,8 @@ enum class Level { debug, info, warning, error };
 /// By its name above; the error lists them.
 [[nodiscard]] Result<Level> level_from(std::string_view name);
 using Sink = std::function<void(Level, std::string_view)>;
-
-/// Replaces the sink (default: nothing is printed). Safe from any thread; the sink must be too.
+/// Replaces the sink (default: nothing is printed). Safe from any thread; the sink must be too. Waits for the
+/// calls of the one before, except from inside a sink: what they use may go afterwards.
 void set_sink(Sink sink);
 /// A line reaches the sink without control characters, whoever wrote what stands in it.
 void write(Level level, std::string_view line);

@@ -1,5 +1,5 @@
 #pragma once
-// Private to the room: our own coder of clouds that lie on a voxel grid, one point in most voxels. A 30-byte
+// Private to the room: our own coder of clouds that lie on a voxel grid, one point in most voxels. A 28-byte
 // header, then one adaptive range-coded stream: which cells of an octree are occupied, level by level, each bit
 // in the context of its neighbours; then where in its voxel each point lies, by what the voxels around
 // foretell. All of the decoder's arithmetic is in integers, so that every computer decodes the same.

@@ -321,13 +321,16 @@ TEST(Client, OdometryOfOthersNeedsItsMethod) {
   EXPECT_THAT(Client::create(o).error(), HasSubstr("options.cpu_share"));
 }
 
-TEST(Client, WrongInputIsRefusedAndCountsNothing) {
+TEST(Client, WrongInputIsRefusedCountedAndTold) {
   auto made = Client::create(options());
   ASSERT_TRUE(made) << made.error();
   Client& client = *made.value();
   const std::vector<std::uint16_t> units(100, 1000);
   EXPECT_THAT(client.push_depth(units.data(), 10, 10, 1).error(), HasSubstr("10x10"));
-  EXPECT_FALSE(client.push_depth(nullptr, 160, 120, 1));
+  EXPECT_THAT(client.stats().problem, HasSubstr("10x10"));
+  EXPECT_THAT(client.push_depth(nullptr, 160, 120, 1).error(), HasSubstr("NULL"));
+  EXPECT_THAT(client.push_points(nullptr, 7, 1).error(), HasSubstr("NULL"));
+  EXPECT_EQ(client.stats().frames_refused, 3U);
   EXPECT_THAT(client.push_imu(1, {0, 0, 0}, {0, 0, 9.81}).error(), HasSubstr("T_imu_sensor"));
   EXPECT_EQ(client.newest().stamp_ns, 0);
   ASSERT_TRUE(client.stop());
@@ -335,6 +338,7 @@ TEST(Client, WrongInputIsRefusedAndCountsNothing) {
   const DepthImage image = covered_at(0);
   EXPECT_THAT(client.push_depth(image.units.data(), 160, 120, 1).error(), HasSubstr("stopped"));
   EXPECT_TRUE(client.stop());
+  EXPECT_EQ(client.stats().frames_refused, 3U) << "nothing counts after a stop";
 }
 
 /// Within ten seconds: what is missing is told after five.

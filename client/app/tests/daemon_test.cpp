@@ -62,6 +62,26 @@ TEST(Daemon, LocatesARobotByItsWheelsAndClouds) {
   EXPECT_TRUE((*daemon)->stop());
 }
 
+TEST(Daemon, CountsAndTellsFramesOfAnotherSize) {
+  auto chosen = options({});
+  const Camera camera = scene::small_camera();
+  chosen.client.camera = {camera.width, camera.height, camera.fx,           camera.fy,
+                          camera.cx,    camera.cy,     camera.depth_scale_m};
+  auto daemon = Daemon::start(chosen, [] { return false; });
+  ASSERT_TRUE(daemon) << daemon.error().message;
+  const auto seat = *wire::Participant::create({.domain = kDomain, .role = wire::Role::source});
+  const auto depth = *wire::DepthPublisher::create(seat, "robot1", shrunk(camera, 2));
+  const auto told = [&] { return (*daemon)->summary().find("depth image is 80x60") != std::string::npos; };
+  for (int i = 0; i < 200 && !told(); ++i) {
+    EXPECT_TRUE(depth.publish(
+        scene::render(scene::furnished_room(1), drive(0), shrunk(camera, 2), kStart + from_ms(50.0 * i))));
+    std::this_thread::sleep_for(30ms);
+  }
+  EXPECT_TRUE(told()) << (*daemon)->summary();
+  EXPECT_THAT((*daemon)->summary(), testing::Not(HasSubstr(" 0 refused, ")));
+  EXPECT_TRUE((*daemon)->stop());
+}
+
 TEST(Daemon, TellsRosTheOdometryOfADepthCamera) {
   const auto server = test::ByHeartServer::start(kDomain);
   ASSERT_TRUE(server) << server.error().message;

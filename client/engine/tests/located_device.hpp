@@ -13,12 +13,12 @@ class Device {
   using Path = Pose (*)(double);
   explicit Device(Inputs inputs, Path path = walk)
       : inputs_(inputs), path_(path), engine(options_for(inputs)), room_(scene::furnished_room(1)) {
-    imu_ = scene::imu_along(path, mounting(), 0, 24, 200, kStart);
+    imu_ = scene::imu_along(path, mounting(), 0, 45, 200, kStart);
   }
 
   /// Walks on for so long. The stamps are what `frame` and `sample` make of the true ones.
   void go(double seconds, const Stamps& frame_stamp, const Stamps& sample_stamp) {
-    for (const double end = t_ + seconds; t_ < end; t_ += 1 / kFrameHz) {
+    for (const double end = t_ + seconds; t_ < end; t_ += 1 / frame_hz) {
       feed_samples(sample_stamp);
       const StampNs stamp = kStart + from_seconds(t_);
       DepthImage image = scene::render(room_, path_(t_), scene::small_camera(), frame_stamp(stamp), 0.004);
@@ -29,7 +29,7 @@ class Device {
       if (std::string now = engine.problem(); !now.empty()) problems += now + "\n";
       if (!frame) continue;
       frame_ = *frame;
-      unlocated_s = engine.tracking() == Tracking::tracking ? 0 : unlocated_s + 1 / kFrameHz;
+      unlocated_s = engine.tracking() == Tracking::tracking ? 0 : unlocated_s + 1 / frame_hz;
       longest_unlocated_s = std::max(longest_unlocated_s, unlocated_s);
       if (frame->T_map_sensor && engine.tracking() == Tracking::tracking)
         worst_m = std::max(worst_m, distance_m(*frame->T_map_sensor, path_(t_)));
@@ -85,6 +85,7 @@ class Device {
   std::size_t next_ = 0;
 
  public:
+  double frame_hz = kFrameHz;
   Engine engine;
   FrameResult frame_;
   std::function<void(ImuSample&)> spoil = [](ImuSample&) {};

@@ -68,6 +68,14 @@ TEST(RequestSchedule, AtOnceAfterADullStretchAndNeverWithinOne) {
   EXPECT_THAT(due_at({7, 8, 9, 10}, 20), ElementsAre(0, 1100, 1900));
 }
 
+TEST(RequestSchedule, FramesThatFlickerDoNotAskMoreOftenThanTheLowerBound) {
+  RequestSchedule schedule(kOptions);
+  std::vector<int> due;
+  for (int ms = 0; ms <= 1000; ms += 50)
+    if (schedule.due(from_ms(ms), ms % 100 == 0)) due.push_back(ms);
+  EXPECT_THAT(due, ElementsAre(0, 200, 400, 600, 800, 1000));
+}
+
 TEST(RequestSchedule, AtOnceWhenThePlaceIsSureAgainButForTheLowerBound) {
   const auto due_with_doubt = [](int first_ms, int last_ms) {
     RequestSchedule schedule(kOptions);

@@ -159,7 +159,7 @@ typedef struct liloc_reply {
 typedef struct liloc_stats {
   uint64_t frames;         /* processed */
   uint64_t frames_dropped; /* the queue was full */
-  uint64_t frames_refused; /* wrong size, or a stamp that was not newer, far off or in another unit */
+  uint64_t frames_refused; /* unusable: wrong size, or a stamp that was not newer, far off or in another unit */
   uint64_t frames_uninformative;
   uint64_t imu_refused;
   uint64_t requests, requests_unsent, requests_unanswered;
@@ -183,7 +183,7 @@ typedef struct liloc_client liloc_client;
 typedef void (*liloc_pose_callback)(const liloc_pose_update* update, void* user);
 /* For every reply, on the network thread. */
 typedef void (*liloc_reply_callback)(const liloc_reply* reply, void* user);
-/* For every line of the log, on any thread; level is a liloc_log_level. */
+/* For every line of the log, on any thread, which may ask any client for its stats; level is a liloc_log_level. */
 typedef void (*liloc_log_callback)(int level, const char* line, void* user);
 
 /* "0.1.0": of the library that runs, not of this header. */
@@ -193,7 +193,8 @@ const char* liloc_client_last_error(void);
 /* "LILOC_OK" and so on; "unknown status" for what is none. */
 const char* liloc_client_status_name(int status);
 
-/* Where the log goes, of all clients of the process. NULL: nowhere, as at the start. */
+/* Where the log goes, of all clients of the process. NULL: nowhere, as at the start. Waits for calls of the callback
+ * before, except from inside one: hold no lock that it needs. What belongs to it may be freed afterwards. */
 liloc_status liloc_client_set_log(liloc_log_callback callback, void* user);
 
 /* Pass sizeof *options, here and below. */
@@ -234,7 +235,8 @@ liloc_status liloc_client_stats(const liloc_client* client, liloc_stats* stats, 
  * it. LILOC_FAILED: the trace's error, and it is stopped all the same. A second stop does nothing. There is no
  * start after it: create another client. */
 liloc_status liloc_client_stop(liloc_client* client);
-/* Stops where that was not done, and frees. NULL is fine. Refused (and nothing freed) inside a callback. */
+/* Stops where that was not done, and frees. NULL is fine. Refused (and nothing freed) inside a callback. The trace's
+ * error goes to the log: call liloc_client_stop first to have it. */
 liloc_status liloc_client_destroy(liloc_client* client);
 
 #ifdef __cplusplus

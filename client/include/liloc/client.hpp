@@ -145,7 +145,7 @@ struct Reply {
 struct Stats {
   std::uint64_t frames = 0;          ///< processed
   std::uint64_t frames_dropped = 0;  ///< the queue was full
-  std::uint64_t frames_refused = 0;  ///< wrong size, or a stamp that was not newer, far off or in another unit
+  std::uint64_t frames_refused = 0;  ///< unreadable, of a wrong size, or of a stamp not newer, far off or in another unit
   std::uint64_t frames_uninformative = 0;
   std::uint64_t imu_refused = 0;
   std::uint64_t requests = 0, requests_unsent = 0, requests_unanswered = 0;
@@ -167,8 +167,10 @@ struct Stats {
 using PoseCallback = std::function<void(const PoseUpdate&)>;
 /// Called for every reply on the network thread.
 using ReplyCallback = std::function<void(const Reply&)>;
-/// Called for every line of the log; any thread. Level 0 debug, 1 info, 2 warning, 3 error. Process-wide.
+/// Called for every line of the log; any thread, which may ask any client for its stats. Level 0 debug, 1 info,
+/// 2 warning, 3 error. Process-wide.
 using LogCallback = std::function<void(int level, const std::string& line)>;
+/// Waits for calls of the callback before, except from inside one: hold no lock that it needs.
 void set_log(LogCallback callback);
 
 /// Owns its threads (registration, sending, network). All calls are safe from any thread and none waits for the
@@ -191,6 +193,9 @@ class Client {
   /// Row-major 16-bit z-depth of the camera's size, 0 = no return; copied. Errors: the size differs from the
   /// camera's, the client was stopped.
   Outcome<Taken> push_depth(const std::uint16_t* units, int width, int height, std::int64_t stamp_ns);
+  /// For drivers: a frame came that could not be read. It counts as refused, and `why` is told and is the
+  /// problem until a frame is taken.
+  void push_unusable(const std::string& why);
   /// IMU axes; `specific_force`: a device at rest reads +g upwards. What no such sensor measures (over 50 rad/s
   /// or 320 m/s^2) is dropped and counted. Errors: no T_imu_sensor, not finite, stopped.
   Outcome<Taken> push_imu(std::int64_t stamp_ns, const std::array<double, 3>& angular_velocity_rad_s,

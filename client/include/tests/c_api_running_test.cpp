@@ -1,6 +1,10 @@
 // A client that runs behind the C API: poses, replies, callbacks, threads.
+#include <sys/resource.h>
+
 #include <atomic>
+#include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <mutex>
 
 #include "client/include/tests/c_api_helpers.hpp"
@@ -63,6 +67,33 @@ TEST(CApiRunning, ACallbackThatStopsItsClientIsRefused) {
   EXPECT_TRUE(within(20s, [&] { return attempts.calls == 1; }));
   EXPECT_EQ(liloc_client_stop(client.get()), LILOC_OK) << error();
   EXPECT_EQ(attempts.refused, 5);
+}
+
+void keep_line(int level, const char* line, void* user) {
+  if (level == LILOC_LOG_ERROR) *static_cast<std::string*>(user) = line;
+}
+
+TEST(CApiRunning, DestroyFreesAndSaysSoWhateverTheTraceSays) {
+  const auto folder = std::filesystem::temp_directory_path() / "liloc_c_api_trace";
+  const std::string trace = folder.string();
+  liloc_client_options o = good_options();
+  o.trace_folder = trace.c_str();
+  liloc_client* client = created(o).release();
+  ASSERT_EQ(liloc_client_start(client), LILOC_OK) << error();
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(push(client, frame_stamp_ns(i)), LILOC_OK);
+  std::string told;
+  ASSERT_EQ(liloc_client_set_log(keep_line, &told), LILOC_OK);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto signal_before = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit full{1, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &full);
+  EXPECT_EQ(liloc_client_destroy(client), LILOC_OK);
+  setrlimit(RLIMIT_FSIZE, &before);
+  static_cast<void>(std::signal(SIGXFSZ, signal_before));
+  EXPECT_EQ(liloc_client_set_log(nullptr, nullptr), LILOC_OK);
+  EXPECT_THAT(told, testing::HasSubstr("File too large"));
+  std::filesystem::remove_all(folder);
 }
 
 struct Answers {

@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 
-CPP_API = {"create", "~Client", "push_depth", "push_imu", "push_points", "push_odometry", "newest", "stats", "stop"}
+CPP_API = {"create", "~Client", "push_depth", "push_unusable", "push_imu", "push_points", "push_odometry", "newest", "stats", "stop"}
 CPP_CALL = re.compile(r"^liloc::client::Client::(~?\w+)(?:\[abi:\w+\])?\(")
 # PCL's I/O and visualization drag VTK and Qt along: too much for a robot.
 HEAVY = re.compile(r"pcl_(io|visualization)|vtk|Qt5|Qt6|GL\b|libX11|embree|png|python", re.IGNORECASE)

@@ -1,5 +1,6 @@
 #include "client/inertial/imu_track.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -123,6 +124,74 @@ TEST(ImuTrack, RefusesWhatIsNotFiniteOrNotNewer) {
   EXPECT_TRUE(track.add({kStart, {0, 0, 0}, {0, 0, 9.81}}));
   EXPECT_FALSE(track.add({kStart, {0, 0, 0}, {0, 0, 9.81}}));
   EXPECT_FALSE(track.add({kStart + 1, {NAN, 0, 0}, {0, 0, 9.81}}));
+}
+
+/// A driver with a message for each sensor, zeros for the other.
+struct Halves {
+  void gyro(double ms) { EXPECT_TRUE(track.add({kStart + from_ms(ms), {0.1, 0, 0}, {0, 0, 0}})); }
+  void force(double ms, const Eigen::Vector3d& force_m_s2 = {0, 0, 9.81}) {
+    EXPECT_TRUE(track.add({kStart + from_ms(ms), {0, 0, 0}, force_m_s2}));
+  }
+  /// Gyro at 200 Hz, accelerometer at every third of them.
+  void both(int from, int to) {
+    for (int i = from; i < to; ++i) {
+      gyro(5.0 * i);
+      if (i % 3 == 0) force(5.0 * i + 2);
+    }
+  }
+  ImuTrack track{ImuTrackOptions{}};
+};
+
+TEST(ImuTrack, ABumpThatMergingRepeatsIsNotTheRangesEnd) {
+  Halves halves;
+  halves.both(0, 30);
+  halves.force(151, {0, 0, 16});
+  halves.both(31, 60);
+  EXPECT_TRUE(halves.track.covers(kStart + from_ms(100), kStart + from_ms(290)));
+  EXPECT_THAT(halves.track.problem(kStart + from_ms(295)), testing::Not(testing::HasSubstr("range")));
+}
+
+TEST(ImuTrack, TheRangesEndIsNoticedInMergedStreamsAsWell) {
+  Halves halves;
+  halves.both(0, 30);
+  halves.force(151, {0, 0, 19.6});
+  halves.gyro(155);
+  halves.force(156, {0, 0, 19.6});
+  halves.gyro(160);
+  EXPECT_THAT(halves.track.problem(kStart + from_ms(160)), testing::HasSubstr("range"));
+}
+
+TEST(ImuTrack, AGyroThatStartsFirstDoesNotChangeTheUnit) {
+  Halves halves;
+  for (int i = 0; i < 18; ++i) halves.gyro(5.0 * i);
+  halves.force(87);
+  halves.both(18, 300);
+  EXPECT_THAT(halves.track.problem(kStart + from_ms(1495)), testing::HasSubstr("merged"));
+  EXPECT_NEAR(halves.track.newest().specific_force_m_s2.norm(), 9.81, 1e-9);
+}
+
+TEST(ImuTrack, AnAccelerometerThatStopsIsToldAndNotReplayed) {
+  Halves halves;
+  halves.both(0, 100);
+  for (int i = 100; i < 200; ++i) halves.gyro(5.0 * i);
+  const StampNs now = kStart + from_ms(995);
+  EXPECT_THAT(halves.track.problem(now), testing::HasSubstr("accelerometer has stopped"));
+  EXPECT_FALSE(halves.track.covers(now - from_ms(60), now));
+  EXPECT_FALSE(halves.track.up(now));
+  EXPECT_TRUE(halves.track.covers(kStart + from_ms(100), kStart + from_ms(400)));
+  halves.both(200, 400);
+  EXPECT_THAT(halves.track.problem(kStart + from_ms(1995)), testing::HasSubstr("merged"));
+  EXPECT_TRUE(halves.track.covers(kStart + from_ms(1900), kStart + from_ms(1960)));
+  EXPECT_FALSE(halves.track.covers(now - from_ms(60), now)) << "what was missing stays so";
+}
+
+TEST(ImuTrack, GravityOfAWrongScaleIsForgottenWithIt) {
+  ImuTrack track({.still_seconds = 1});
+  for (int i = 0; i < 300; ++i)
+    ASSERT_TRUE(track.add({kStart + from_ms(5.0 * i), {0, 0, 0}, {0, 0, i < 240 ? 19.6 : 9.8}}));
+  track.begin_anew(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
+  const auto motion = track.motion(kStart + from_ms(1350), kStart + from_ms(1450), Eigen::Vector3d::Zero());
+  EXPECT_LT(motion.velocity_end_m_s.norm(), 0.01);
 }
 
 }  // namespace

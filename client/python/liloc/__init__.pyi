@@ -110,7 +110,7 @@ class Stats:
         """The queue was full."""
     @property
     def frames_refused(self) -> int:
-        """Wrong size, or a stamp that was not newer."""
+        """Unusable: wrong size, or a stamp that was not newer, far off or in another unit."""
     @property
     def frames_uninformative(self) -> int: ...
     @property
@@ -216,7 +216,8 @@ class Client:
     def newest(self) -> PoseUpdate:
         """Of the newest processed frame."""
     def wait(self, newer_than_ns: int = 0, timeout_s: float = 1.0) -> Optional[PoseUpdate]:
-        """The newest pose once its stamp is newer than that; None when the time is over."""
+        """The newest pose once its stamp is newer than that; None when the time is over. Of a device whose clock was set
+        back, what comes after is newer than the stamps of the last 64 poses before."""
     def stats(self) -> Stats: ...
     def stop(self) -> None:
         """Takes no more frames, finishes those that wait, writes the trace. A second stop does nothing. Raises Error
@@ -230,5 +231,5 @@ class Client:
     ) -> None: ...
 
 def set_log(callback: Optional[Callable[[int, str], object]]) -> None:
-    """Called for every line of the log, on any thread; level 0 debug, 1 info, 2 warning, 3 error. None: nowhere, as at
+    """Called for every line of the log, on any thread, which may ask for a client's stats; level 0 debug, 1 info, 2 warning, 3 error. None: nowhere, as at
     the start. Process-wide."""

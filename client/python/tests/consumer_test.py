@@ -69,6 +69,19 @@ class Walk(unittest.TestCase):
             self.assertIsNone(robot.wait(timeout_s=0))
 
 
+    def test_a_clock_that_is_set_back_wakes_who_waits(self):
+        with client() as robot:
+            for frame in range(5):
+                robot.push_depth(box.render(frame), box.stamp_ns(frame))
+            last = robot.wait(newer_than_ns=box.stamp_ns(3), timeout_s=20)
+            for frame in range(5, 10):
+                robot.push_depth(box.render(frame), box.stamp_ns(frame) - 100_000_000_000)
+            newest = robot.wait(newer_than_ns=last.stamp_ns, timeout_s=20)
+            self.assertIsNotNone(newest)
+            self.assertLess(newest.stamp_ns, last.stamp_ns)
+            self.assertIsNone(robot.wait(newer_than_ns=box.stamp_ns(9) - 100_000_000_000, timeout_s=0.2))
+
+
 class Answered(unittest.TestCase):
     def test_replies_locate_the_client(self):
         replies = []

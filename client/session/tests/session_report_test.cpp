@@ -48,6 +48,19 @@ TEST(SessionReport, LogsWhatChangesOnce) {
   EXPECT_EQ(report.stats().problem, "");
 }
 
+TEST(SessionReport, WhoHearsALineMayAsk) {
+  SessionReport report("robot1");
+  std::vector<std::uint64_t> asked;
+  log::set_sink([&](log::Level, std::string_view) { asked.push_back(report.stats().frames_refused); });
+  report.frame(frame_at(1), Tracking::tracking, "too wide");
+  report.frame_refused("wrong");
+  report.samples_refused(&SessionStats::imu_refused, 1, "wrong");
+  report.reply_dropped("wrong");
+  report.trace_failed("full");
+  log::set_sink({});
+  EXPECT_THAT(asked, testing::ElementsAre(0U, 0U, 1U, 1U, 1U, 1U));
+}
+
 TEST(SessionReport, IsLostWithoutFramesAndComesBackWithThem) {
   using namespace std::chrono_literals;
   SessionReport report("robot1");

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <future>
+#include <thread>
+
 namespace liloc::log {
 namespace {
 
@@ -24,6 +28,31 @@ TEST(Log, LinesGoWhereTheProgramSays) {
   set_sink({});
   error("nobody listens any more");
   EXPECT_THAT(lines, testing::ElementsAre("2 1 of 2"));
+}
+
+TEST(Log, NoCallOfASinkOutlivesIt) {
+  std::promise<void> entered;
+  std::atomic<bool> left = false;
+  set_sink([&](Level, std::string_view) {
+    entered.set_value();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    left = true;
+  });
+  std::jthread writer([] { warning("slow"); });
+  entered.get_future().wait();
+  set_sink({});
+  EXPECT_TRUE(left);
+}
+
+TEST(Log, ASinkMayReplaceItself) {
+  int called = 0;
+  set_sink([&](Level, std::string_view) {
+    ++called;
+    set_sink({});
+  });
+  warning("once");
+  warning("nobody listens any more");
+  EXPECT_EQ(called, 1);
 }
 
 TEST(Log, NoControlCharacterReachesTheSink) {

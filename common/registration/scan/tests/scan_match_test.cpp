@@ -153,7 +153,9 @@ TEST(ScanMatch, SaysWhyItStopped) {
     return match_scan(map, frame, {T_guess, 0.02, 0.02}, 2, options)->stop;
   };
   EXPECT_EQ(stopped(T, {}), ScanStop::converged);
-  EXPECT_EQ(stopped(disturbed(T, 1, 0.02, 0.02), {.max_iterations = 1}), ScanStop::iteration_limit);
+  ScanMatchOptions one_iteration;
+  one_iteration.max_iterations = 1;
+  EXPECT_EQ(stopped(disturbed(T, 1, 0.02, 0.02), one_iteration), ScanStop::iteration_limit);
   Pose T_far = T;
   T_far.translation().x() += 100;
   EXPECT_EQ(stopped(T_far, {}), ScanStop::too_few_pairs);

@@ -145,7 +145,7 @@ struct Reply {
 struct Stats {
   std::uint64_t frames = 0;          ///< processed
   std::uint64_t frames_dropped = 0;  ///< the queue was full
-  std::uint64_t frames_refused = 0;  ///< unreadable, of a wrong size, or of a stamp not newer, far off or in another unit
+  std::uint64_t frames_refused = 0;  ///< unreadable, wrong size, a stamp not newer, far off or in another unit
   std::uint64_t frames_uninformative = 0;
   std::uint64_t imu_refused = 0;
   std::uint64_t requests = 0, requests_unsent = 0, requests_unanswered = 0;

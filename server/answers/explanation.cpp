@@ -50,7 +50,7 @@ Word ceiling_word(const Target& target, const Eigen::Vector3f& p_map, float tole
     agrees |= sight == Sight::agrees;
     conflict |= sight == Sight::conflict;
   }
-  return word_of(agrees, conflict && (target.movers() == nullptr || !target.movers()->at(p_map)));
+  return word_of(agrees, conflict && (target.dynamic_mask() == nullptr || !target.dynamic_mask()->at(p_map)));
 }
 
 void mark(const Spot& spot, Explanation* explanation) {

@@ -53,7 +53,7 @@ Json lidar_json(const web::LidarFacts& lidar) {
   return {{"state", wire::name_of(health.state)},
           {"hz", digits(health.measured_hz)},
           {"age_s", digits(lidar.age_s)},
-          {"returns", digits(lidar.valid_share)},
+          {"returns", digits(health.returns)},
           {"frames", health.frames},
           {"malformed", health.malformed},
           {"error", health.last_error}};

@@ -37,7 +37,10 @@ TEST(TextMessages, ASiteTellsWhereItsLidarsHangAndLook) {
 
 TEST(TextMessages, NowTellsEachLidarAndDevice) {
   web::ServerFacts facts;
-  facts.lidars = {{{.id = "c0", .state = wire::LidarState::slow, .measured_hz = 4.9}, 0.2, 0.75}, {}};
+  facts.lidars.resize(2);
+  facts.lidars[0].health.state = wire::LidarState::slow;
+  facts.lidars[0].health.measured_hz = 4.9;
+  facts.lidars[0].age_s = 0.2;
   const auto told = json::parse(now_message(facts, {device()}, kNow + std::chrono::seconds(2)));
   EXPECT_EQ(told["lidars"][0]["state"], "slow");
   EXPECT_EQ(told["lidars"][0]["age_s"], 0.2);

@@ -4,6 +4,7 @@
 
 #include <ctime>
 
+#include "common/base/log.hpp"
 #include "common/credentials/pem.hpp"
 
 namespace liloc {
@@ -106,6 +107,13 @@ Result<Credentials> read_credentials(const path& folder) {
   if (const Status ok = check_documents(c, **certificate, **permissions_ca); !ok)
     return tl::unexpected(ok.error());
   return c;
+}
+
+void warn_of(const Credentials& credentials, std::chrono::system_clock::time_point now) {
+  if (const int days = days_left(credentials, now); days < kRenewDays)
+    log::warning("{} expires in {} days; deploy/credentials renew {}", credentials.certificate().string(), days,
+                 credentials.name);
+  if (credentials.key_exposed) log::warning("{} can be read by others; chmod 600", credentials.key().string());
 }
 
 int days_left(const Credentials& credentials, std::chrono::system_clock::time_point now) {

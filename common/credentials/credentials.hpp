@@ -37,5 +37,7 @@ constexpr int kRenewDays = 30;  ///< so long before their end, credentials are c
 
 /// Whole days until `credentials` expire, at `now`; negative when they have.
 [[nodiscard]] int days_left(const Credentials& credentials, std::chrono::system_clock::time_point now);
+/// To the log: that they end within `kRenewDays`, or that others can read the private key.
+void warn_of(const Credentials& credentials, std::chrono::system_clock::time_point now);
 
 }  // namespace liloc

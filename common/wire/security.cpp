@@ -54,9 +54,7 @@ Result<Qos> security_qos(const std::string& folder) {
   if (!credentials) return fail("credentials: {}", credentials.error().message);
   const auto plugins = plugin_folder();
   if (!plugins) return fail("credentials: {}", plugins.error().message);
-  if (const int days = days_left(*credentials, std::chrono::system_clock::now()); days < kRenewDays)
-    log::warning("{} expires in {} days; deploy/credentials renew {}", credentials->certificate().string(),
-                 days, credentials->name);
+  warn_of(*credentials, std::chrono::system_clock::now());
   Qos qos = make_qos();
   set_library(qos.get(), "auth", *plugins / "libdds_security_auth.so", "authentication");
   set_library(qos.get(), "access", *plugins / "libdds_security_ac.so", "access_control");

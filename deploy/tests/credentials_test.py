@@ -102,6 +102,14 @@ class Credentials(unittest.TestCase):
         self.made("renew", "robot1")
         self.assertRegex(self.made("list"), r"robot1 +device +valid")
 
+    def test_a_stray_file_among_the_folders_keeps_no_revocation_back(self):
+        for words in (("device", "a"), ("device", "z")):
+            self.made(*words)
+        (self.store / "parties" / "m.tgz").write_text("packed for transport")
+        self.made("revoke", "a")
+        text = openssl("crl", "-in", self.store / "parties/z/crl.pem", "-noout", "-text").stdout
+        self.assertEqual(text.count("Serial Number"), 1)
+
     def test_what_makes_no_sense_is_refused(self):
         self.made("server", "edge")
         self.refused(1, "is never overwritten", "init")

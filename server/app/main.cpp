@@ -22,17 +22,41 @@ std::string as_json(log::Level level, std::string_view line) {
 constexpr auto kLookEvery =
     std::chrono::seconds(2);  // at credentials: twice, and devices join anew within 10 s
 
+/// Once a day while the server runs.
+class EndOfCredentials {
+ public:
+  void look(const std::string& folder) {
+    const auto now = std::chrono::steady_clock::now();
+    if (folder.empty() || now < next_) return;
+    next_ = now + std::chrono::hours(24);
+    if (const auto held = read_credentials(folder); !held)
+      log::error("{}", held.error().message);
+    else
+      warn_of(*held, std::chrono::system_clock::now());
+  }
+
+ private:
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::hours(24);
+};
+
 /// Until a stop signal, which it returns. Errors: the network, when it joined again.
-Result<int> serve(Server& server, const ServerOptions& options, const StopSignals& signals) {
-  CredentialsWatch credentials(options.seat.credentials);
+Result<int> serve(Server& server, const ServerOptions& options, CredentialsWatch& credentials,
+                  const StopSignals& signals) {
+  const std::string& folder = options.seat.credentials;
+  EndOfCredentials end;
+  bool changed = false, told = false;  // what cannot be read yet is looked at again: a key's owner may follow
   for (;;) {
     if (const int signal = signals.within(kLookEvery)) return signal;
-    if (!credentials.changed()) continue;
-    if (const auto good = read_credentials(options.seat.credentials); !good) {
-      log::error("{}; the credentials before these stay in use", good.error().message);
+    end.look(folder);
+    if (credentials.changed()) changed = true, told = false;
+    if (!changed) continue;
+    if (const auto good = read_credentials(folder); !good) {
+      if (!told) log::error("{}; the credentials before these stay in use", good.error().message);
+      told = true;
       continue;
     }
-    log::info("{} has changed: everybody joins anew", options.seat.credentials);
+    changed = false;
+    log::info("{} has changed: everybody joins anew", folder);
     if (const Status joined = server.rejoin(options); !joined) return tl::unexpected(joined.error());
   }
 }
@@ -51,7 +75,8 @@ int run(int argc, char** argv) {
   const auto to_stderr = command::stderr_sink("liloc-server", options->log_level,
                                               options->log_json ? as_json : command::LineFormat{});
   log::set_sink([tail, to_stderr, least = options->log_level](log::Level level, std::string_view line) {
-    if (level >= least) tail->add(level, line);
+    const bool secret = line.find("?token=") != std::string_view::npos;  // not for those who look at the page
+    if (level >= least && !secret) tail->add(level, line);
     to_stderr(level, line);
   });
   const auto site = read_site(options->site_file);
@@ -59,6 +84,7 @@ int run(int argc, char** argv) {
     log::error("{}", site.error().message);
     return 2;
   }
+  CredentialsWatch credentials(options->seat.credentials);  // before they are read: none may change unseen
   const auto server = Server::start(*options, *site, tail);
   if (!server) {
     log::error("{}", server.error().message);
@@ -75,7 +101,7 @@ int run(int argc, char** argv) {
       log::warning(
           "the page travels unencrypted: put a proxy with TLS before it where others share the network");
   }
-  const auto signal = serve(**server, *options, signals);
+  const auto signal = serve(**server, *options, credentials, signals);
   if (!signal) {
     log::error("{}", signal.error().message);
     return 1;

@@ -264,7 +264,7 @@ void Server::save_learned() {
 
 /// In the order in which members go.
 void Server::leave() {
-  stop();
+  halt();
   dispatcher_.reset();
   service_.reset();
   ingest_.reset();
@@ -273,12 +273,16 @@ void Server::leave() {
 }
 
 void Server::stop() {
+  halt();
+  if (keeper_) keeper_->stop();
+}
+
+void Server::halt() {
   page_.reset();
   web_.reset();
   preparer_.request_stop();
   if (preparer_.joinable()) preparer_.join();
   if (service_) service_->stop();
-  if (keeper_) keeper_->stop();
   if (dispatcher_) dispatcher_->stop();
   save_learned();
 }

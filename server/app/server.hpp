@@ -44,6 +44,7 @@ class Server {
   Server(const ServerOptions& options, Site site);
   [[nodiscard]] Status join(const ServerOptions& options);
   void leave();
+  void halt();  ///< all but what outlives a `rejoin`
   [[nodiscard]] Status open(const ServerOptions& options);
   [[nodiscard]] Status open_streams(const ServerOptions& options);
   [[nodiscard]] Status open_web(const web::Address& address);

@@ -37,11 +37,11 @@ void Audience::paint() {
   if (!painting_) return painter_.rest();
   try {
     painter_.paint(std::chrono::steady_clock::now());
+    for (const auto& viewer : viewers_) viewer->show();
   } catch (const std::exception& trouble) {  // such as no memory: the next picture may do
     if (const auto held = troubles_.pass(std::chrono::steady_clock::now()))
       log::error("the page could not be drawn: {}{}", trouble.what(), held_back(*held));
   }
-  for (const auto& viewer : viewers_) viewer->show();
   timer_.expires_after(kEvery);
   timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error) paint();

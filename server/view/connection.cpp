@@ -1,5 +1,7 @@
 #include "server/view/connection.hpp"
 
+#include <algorithm>
+#include <array>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -19,7 +21,7 @@ using boost::system::error_code;
 constexpr std::chrono::seconds kPatience{10};
 constexpr std::uint32_t kHeaderLimit = 8 * 1024;
 constexpr std::uint64_t kBodyLimit = 1024;
-constexpr const char* kCookie = "liloc_token";
+constexpr std::array kProxyFields{"X-Forwarded-For", "Forwarded", "X-Real-IP", "Via"};
 
 std::string_view as_view(boost::beast::string_view text) {
   return {text.data(), text.size()};
@@ -43,11 +45,11 @@ Connection::Response words(http::status status, std::string text) {
 }
 
 /// What stood in the query goes into a cookie, so that it does not stay in the address.
-Connection::Response with_cookie(const std::string& token) {
+Connection::Response with_cookie(const std::string& name, const std::string& token) {
   Connection::Response made = words(http::status::see_other, "");
   made.set(http::field::location, "/");
   made.set(http::field::set_cookie,
-           fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/; Max-Age=2592000", kCookie, token));
+           fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/; Max-Age=2592000", name, token));
   return made;
 }
 
@@ -107,6 +109,12 @@ void Connection::answer(Response made) {
   });
 }
 
+/// Cookies do not tell ports apart, and two servers may run on one host.
+std::string Connection::cookie() const {
+  error_code unknown;
+  return fmt::format("liloc_token_{}", stream_.socket().local_endpoint(unknown).port());
+}
+
 std::optional<Connection::Response> Connection::refusal(const Request& request) const {
   if (request.method() != http::verb::get) {
     Response made = words(http::status::method_not_allowed, "GET only\n");
@@ -114,6 +122,9 @@ std::optional<Connection::Response> Connection::refusal(const Request& request) 
     return made;
   }
   if (token_.empty()) {
+    if (std::ranges::any_of(kProxyFields,
+                            [&](const char* field) { return request.find(field) != request.end(); }))
+      return words(http::status::forbidden, "behind a proxy the page needs a token: --web-token FILE\n");
     if (names_this_host(as_view(request[http::field::host]))) return std::nullopt;
     return words(
         http::status::forbidden,
@@ -121,8 +132,9 @@ std::optional<Connection::Response> Connection::refusal(const Request& request) 
   }
   const auto given = in_query(as_view(request.target()), "token");
   if (given && same_secret(*given, token_))
-    return path_of(as_view(request.target())) == "/" ? std::optional(with_cookie(token_)) : std::nullopt;
-  const auto kept = in_cookie(as_view(request[http::field::cookie]), kCookie);
+    return path_of(as_view(request.target())) == "/" ? std::optional(with_cookie(cookie(), token_))
+                                                     : std::nullopt;
+  const auto kept = in_cookie(as_view(request[http::field::cookie]), cookie());
   if (!given && kept && same_secret(*kept, token_)) return std::nullopt;
   return words(http::status::unauthorized,
                "a token is needed: open /?token=TOKEN once; it stands in the server's log, or in the file of "

@@ -50,9 +50,9 @@ struct PageServer::Impl {
           if (!stopped) accept();
         });
       }
+      boost::asio::post(io, [this] { accept(); });  // whatever becomes of this one
       if (static_cast<std::size_t>(seats.use_count()) <= kMostConnections)
         std::make_shared<Connection>(std::move(socket), options.token, audience, seats)->read();
-      accept();
     });
   }
 

@@ -90,8 +90,15 @@ TEST_F(Page, WithoutATokenOnlyThisHostsOwnNamesAreServed) {
   EXPECT_EQ(handshake(port, "Origin: http://localhost:" + std::to_string(port) + "\r\n"), "HTTP/1.1 101");
 }
 
+TEST_F(Page, BehindAProxyATokenIsNeeded) {
+  EXPECT_THAT(get("/", "X-Forwarded-For: 10.0.0.7\r\n"), StartsWith("HTTP/1.1 403"));
+  start(kToken);
+  EXPECT_THAT(get("/?token=" + kToken, "X-Forwarded-For: 10.0.0.7\r\n"), StartsWith("HTTP/1.1 303"));
+}
+
 TEST_F(Page, ATokenIsAskedOfEveryone) {
   start(kToken);
+  const std::string cookie = "liloc_token_" + std::to_string(port) + "=";
   for (const std::string& path :
        {std::string("/"), std::string("/page.js"), std::string("/scan?device=a"), std::string("/?token="),
         "/?token=" + kToken + "x", "/?token=1" + kToken.substr(1)})
@@ -99,10 +106,10 @@ TEST_F(Page, ATokenIsAskedOfEveryone) {
   EXPECT_EQ(handshake(port), "HTTP/1.1 401");
   const std::string let_in = get("/?token=" + kToken);
   EXPECT_THAT(let_in, StartsWith("HTTP/1.1 303"));
-  EXPECT_THAT(let_in, HasSubstr("Set-Cookie: liloc_token=" + kToken + "; HttpOnly; SameSite=Strict"));
-  EXPECT_THAT(get("/", "Cookie: liloc_token=" + kToken + "\r\n", "edge.example"), StartsWith("HTTP/1.1 200"));
-  EXPECT_THAT(get("/", "Cookie: liloc_token=wrong\r\n"), StartsWith("HTTP/1.1 401"));
-  EXPECT_EQ(handshake(port, "Cookie: liloc_token=" + kToken + "\r\n"), "HTTP/1.1 101");
+  EXPECT_THAT(let_in, HasSubstr("Set-Cookie: " + cookie + kToken + "; HttpOnly; SameSite=Strict"));
+  EXPECT_THAT(get("/", "Cookie: " + cookie + kToken + "\r\n", "edge.example"), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(get("/", "Cookie: " + cookie + "wrong\r\n"), StartsWith("HTTP/1.1 401"));
+  EXPECT_EQ(handshake(port, "Cookie: " + cookie + kToken + "\r\n"), "HTTP/1.1 101");
 }
 
 TEST_F(Page, ShowsTheSiteAsItChanges) {

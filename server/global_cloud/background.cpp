@@ -44,6 +44,7 @@ float Background::tolerance_of(float units) const {
 void Background::replace(Pixel* pixel, float units) {
   pixel->surface = units;
   pixel->averaged = 1;
+  pixel->doubted = false;
   pixel->candidates = 0;
   pixel->missed = 0;
   pixel->gap = static_cast<float>(1 / (1 - std::min(noise().missing, kMostMissing)));
@@ -138,7 +139,7 @@ Layers Background::learn(const DepthImage& image) {
       meter_.add_pair(image.units[i] * scale_m_, (image.units[i] - pixels_[i].last) * scale_m_);
     pixels_[i].last = image.units[i];
     kinds_[i] = learn(i, image.units[i], now_ms);
-    replaced_ += passing(i) && pixels_[i].shown != 0 ? 1 : 0;
+    doubt(&pixels_[i], kinds_[i]);
   }
   measure();
   return separated(image);
@@ -169,13 +170,18 @@ Change Background::change() const {
   return share > options_.small_share ? Change::small : Change::none;
 }
 
-bool Background::passing(std::size_t i) const {
-  return kinds_[i] == Kind::nearer && pixels_[i].averaged < kProven;
+void Background::doubt(Pixel* pixel, Kind kind) {
+  if (pixel->averaged >= kProven)
+    pixel->doubted = false;
+  else if (kind == Kind::nearer && !pixel->doubted) {
+    pixel->doubted = true;
+    replaced_ += pixel->shown != 0 ? 1 : 0;
+  }
 }
 
 void Background::show(std::size_t i) {
   Pixel* pixel = &pixels_[i];
-  if (passing(i)) {
+  if (pixel->doubted) {
     pixel->shown = 0;
     return;
   }

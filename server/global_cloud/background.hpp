@@ -32,7 +32,7 @@ struct Layers {
 /// The room before one ceiling LiDAR without what moves. The LiDAR stands still, so each pixel has a history of
 /// its own: a return nearer than its surface, or where there was none, belongs to something that came by, until
 /// it has stood there for a while; two farther ones show that the old surface is gone. A surface of few frames
-/// that something nearer hides may be the same thing on its way: it is not shown until it is seen again. A
+/// that something nearer hides may be the same thing on its way: it is not shown until it is seen for longer. A
 /// return that continues a neighbour's surface where there was none is more of that. Surfaces are running
 /// means, so their noise shrinks with time. A sensor that often has no return keeps its surfaces for longer.
 /// Not thread-safe.
@@ -61,6 +61,7 @@ class Background {
     std::uint32_t candidate_since_ms = 0, missing_since_ms = 0;
     std::uint8_t averaged = 0, candidates = 0;
     bool missing = false;
+    bool doubted = false;             ///< hidden while of few frames: not shown until it is of more
     std::uint8_t shown_averaged = 0;  ///< frames in the mean that `surfaces` showed last
     std::uint16_t shown = 0;          ///< units
     std::uint16_t missed = 0;         ///< frames since the last return
@@ -74,8 +75,8 @@ class Background {
   [[nodiscard]] float tolerance_of(float units) const;
   template <class Visit>
   void for_each_around(std::size_t i, const Visit& visit) const;
-  /// Whether pixel i's surface may be somebody who has come nearer since.
-  [[nodiscard]] bool passing(std::size_t i) const;
+  /// Takes note where a surface may be somebody who has come nearer since; once for each surface.
+  void doubt(Pixel* pixel, Kind kind);
   void show(std::size_t i);
   [[nodiscard]] bool gained() const;
   void miss(Pixel* pixel, std::uint32_t now_ms);

@@ -75,8 +75,7 @@ int run(int argc, char** argv) {
   const auto to_stderr = command::stderr_sink("liloc-server", options->log_level,
                                               options->log_json ? as_json : command::LineFormat{});
   log::set_sink([tail, to_stderr, least = options->log_level](log::Level level, std::string_view line) {
-    const bool secret = line.find("?token=") != std::string_view::npos;  // not for those who look at the page
-    if (level >= least && !secret) tail->add(level, line);
+    if (level >= least) tail->add(level, line);
     to_stderr(level, line);
   });
   const auto site = read_site(options->site_file);
@@ -96,7 +95,8 @@ int run(int argc, char** argv) {
   if (options->metrics)
     log::info("metrics on http://{}:{}/metrics", options->metrics->host, (*server)->metrics_port());
   if (options->page) {
-    log::info("page on {}", (*server)->page_url());
+    // Past the tail: who looks at the page must not read its token there.
+    to_stderr(log::Level::info, fmt::format("page on {}", (*server)->page_url()));
     if (!view::is_loopback(*options->page))
       log::warning(
           "the page travels unencrypted: put a proxy with TLS before it where others share the network");

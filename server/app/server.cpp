@@ -90,7 +90,9 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Site
 
 Status Server::rejoin(const ServerOptions& options) {
   leave();
-  return join(options);
+  Status joined = join(options);
+  if (!joined) halt();
+  return joined;
 }
 
 Status Server::join(const ServerOptions& options) {
@@ -267,6 +269,7 @@ void Server::leave() {
   halt();
   dispatcher_.reset();
   service_.reset();
+  localizer_.forget_all();  // whom the credentials no longer let in must not be remembered
   ingest_.reset();
   status_publisher_.reset();
   participant_.reset();

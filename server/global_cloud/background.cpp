@@ -179,8 +179,7 @@ void Background::doubt(Pixel* pixel, Kind kind) {
   }
 }
 
-void Background::show(std::size_t i) {
-  Pixel* pixel = &pixels_[i];
+void Background::show(Pixel* pixel) const {
   if (pixel->doubted) {
     pixel->shown = 0;
     return;
@@ -198,9 +197,9 @@ DepthImage Background::surfaces() {
   replaced_ = 0;
   DepthImage image{last_ns_, width_, height_, {}};
   image.units.reserve(pixels_.size());
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    show(i);
-    image.units.push_back(pixels_[i].shown);
+  for (Pixel& pixel : pixels_) {
+    show(&pixel);
+    image.units.push_back(pixel.shown);
   }
   return image;
 }

@@ -77,7 +77,7 @@ class Background {
   void for_each_around(std::size_t i, const Visit& visit) const;
   /// Takes note where a surface may be somebody who has come nearer since; once for each surface.
   void doubt(Pixel* pixel, Kind kind);
-  void show(std::size_t i);
+  void show(Pixel* pixel) const;
   [[nodiscard]] bool gained() const;
   void miss(Pixel* pixel, std::uint32_t now_ms);
   [[nodiscard]] float surprisal_of_missing(const Pixel& pixel) const;  ///< -ln of its chance

@@ -1,6 +1,7 @@
 #include "server/global_cloud/global_cloud.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 namespace liloc {
 namespace {
@@ -128,7 +129,7 @@ std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame
   const StampNs stamp_ns = std::ranges::max(frames, {}, &LidarFrame::stamp_ns)->stamp_ns();
   std::erase_if(all_rooms_, [](const auto& room) { return room.expired(); });
   const auto crowding = static_cast<StampNs>(std::max<std::size_t>(1, all_rooms_.size() / kRoomsAtEase));
-  for (const auto& room : rooms_)
+  for (const auto& room : rooms_ | std::views::reverse)
     if (gap(room->stamp_ns(), stamp_ns) < crowding * options_.least_renewal_ns &&
         of_same_lidars(room->parts(), parts))
       return room;

@@ -65,7 +65,7 @@ struct Localizer::Impl {
     return learned;
   }
 
-  /// The client is told each time, the log once.
+  /// Once for each client.
   void note_trouble(const std::string& client_id, const Spot& spot) {
     if (spot.trouble().empty()) return;
     const std::scoped_lock lock(mutex);
@@ -128,6 +128,13 @@ void Localizer::forget(const std::string& client_id) {
   impl_->sessions.erase(client_id);
   impl_->last_learned.erase(client_id);
   impl_->troubled.erase(client_id);
+}
+
+void Localizer::forget_all() {
+  const std::scoped_lock lock(impl_->mutex);
+  impl_->sessions.clear();
+  impl_->last_learned.clear();
+  impl_->troubled.clear();
 }
 
 std::shared_ptr<const CellBounds> Localizer::learned() const {

@@ -71,6 +71,8 @@ class Localizer {
   [[nodiscard]] SpotReply locate(const SpotRequest& request);
   /// Forgets what is known of a client, e.g. when it has left.
   void forget(const std::string& client_id);
+  /// Forgets all clients; what verified answers have taught stays.
+  void forget_all();
   /// What verified answers have taught so far. A new object whenever there was something to learn.
   [[nodiscard]] std::shared_ptr<const CellBounds> learned() const;
 

@@ -77,7 +77,6 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
   spot->snapshot_ = std::move(snapshot);
   spot->gpc_stamp_ns_ = spot->snapshot_->stamp_near(request.match_stamp_ns());
   spot->bounds_ = std::move(bounds);
-  spot->T_odom_sensor_ = request.T_odom_sensor;
   Cloud extra;
   if (!request.extra.bytes.empty()) {
     if (auto decoded = decode(request.extra))
@@ -85,11 +84,15 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
     else
       spot->trouble_ = "surroundings left out: " + decoded.error().message;
   }
-  if (moving) spot->moving_ = moving(*cloud);
-  spot->query_ =
-      make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed}, extra, spot->moving_);
   const double fewest = kLeastSurface_m2 / (options.voxel_size_m * options.voxel_size_m);
-  if (static_cast<double>(spot->query_.cloud.size()) < fewest)
+  const auto take = [&](std::vector<std::uint32_t> left_out) {
+    spot->moving_ = std::move(left_out);
+    spot->query_ = make_query(*cloud, &request.view.camera, {options.voxel_size_m, 300, options.seed}, extra,
+                              spot->moving_);
+    return static_cast<double>(spot->query_.cloud.size()) >= fewest;
+  };
+  // Where too little stands still, what moves is better than nothing.
+  if (!take(moving ? moving(*cloud) : std::vector<std::uint32_t>()) && (spot->moving_.empty() || !take({})))
     return fail("the LPC has {} usable points; at least {:.0f} are needed", spot->query_.cloud.size(), fewest);
   for (const auto& p : spot->query_.sparse.points)
     spot->middle_sensor_ += p.cast<double>() / static_cast<double>(spot->query_.sparse.size());

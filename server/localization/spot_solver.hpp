@@ -37,7 +37,7 @@ class Spot {
   /// What `moving` said.
   [[nodiscard]] const std::vector<std::uint32_t>& moving() const { return moving_; }
   [[nodiscard]] StampNs gpc_stamp_ns() const { return gpc_stamp_ns_; }
-  [[nodiscard]] const Pose& T_odom_sensor() const { return T_odom_sensor_; }
+  [[nodiscard]] const Pose& T_odom_sensor() const { return request_.T_odom_sensor; }
   /// What of the request could not be used, for people; empty: nothing.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
   /// The middle of the device's cloud if the device were there, map frame.
@@ -56,7 +56,6 @@ class Spot {
   StampNs gpc_stamp_ns_ = 0;
   Query query_;
   Eigen::Vector3d middle_sensor_ = Eigen::Vector3d::Zero();
-  Pose T_odom_sensor_ = Pose::Identity();
   mutable std::once_flag described_once_;
   mutable Described described_;
   std::optional<SpotProblem> problem_;

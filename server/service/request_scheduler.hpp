@@ -67,7 +67,7 @@ class RequestScheduler {
   Sessions sessions_;
   std::deque<wire::Arrival> held_;
   RequestQueue queue_;
-  SourceLimit refusals_, failures_, twins_;  // lines of the log, by client
+  SourceLimit refusals_, failures_, twins_;  // lines of the log, by client (and reason)
   bool stopping_ = false;
   std::atomic<std::uint64_t> answered_ = 0, verified_ = 0, refused_ = 0;
   std::vector<std::thread> workers_;

@@ -65,15 +65,18 @@ CalibratedLidar result_of(std::size_t i, const std::vector<LidarScan>& scans,
 }
 
 /// Refines, and judges whom to trust. A LiDAR whose place is in doubt must not lead others astray: they are
-/// refined without it, until no further one is doubted. `results` holds those that are left out already.
-void decide_trust(const std::vector<LidarScan>& scans, const Reference* reference, JointOptions joint,
-                  std::vector<JointLidar>* lidars, std::vector<CalibratedLidar>* results) {
+/// refined anew without it, until no further one is doubted. `results` holds what is thought of each before.
+void decide_trust(const std::vector<LidarScan>& scans, const Reference* reference, const Places& places,
+                  const JointOptions& joint, std::vector<JointLidar>* lidars,
+                  std::vector<CalibratedLidar>* results) {
   const auto fewest = reference == nullptr ? 2 : 1;
+  const std::vector<JointLidar> start = *lidars;
   bool doubted = true;
   while (doubted && std::ranges::count(*lidars, false, &JointLidar::left_out) >= fewest) {
+    for (std::size_t i = 0; i < scans.size(); ++i) (*lidars)[i].T_map_sensor = start[i].T_map_sensor;
     refine_together(reference, lidars, joint);
-    joint.start_distance_m = joint.end_distance_m;
     JointOptions whatever_depths = joint;
+    whatever_depths.start_distance_m = joint.end_distance_m;
     whatever_depths.depth_errors = true;
     std::vector<JointLidar> with_errors = *lidars;
     refine_together(reference, &with_errors, whatever_depths);
@@ -82,6 +85,8 @@ void decide_trust(const std::vector<LidarScan>& scans, const Reference* referenc
     doubted = false;
     for (std::size_t i = 0; i < scans.size(); ++i) {
       CalibratedLidar& result = (*results)[i];
+      if (places[i] && places[i]->twin && result.trusted())
+        result.doubt = "another place fits almost as well; give a rough one with --near";
       if (reference == nullptr && result.trusted() && !results->front().trusted())
         result.doubt = "the first LiDAR, which holds the others, is in doubt";
       doubted |= !result.trusted() && !(*lidars)[i].left_out;
@@ -112,19 +117,17 @@ Result<std::vector<CalibratedLidar>> calibrate(const std::vector<LidarScan>& sca
     lidars[i].cloud = &scans[i].cloud;
     lidars[i].T_map_sensor = places[i] ? places[i]->T_map_sensor : scans[i].lidar.T_map_sensor;
     lidars[i].fixed = reference == nullptr && i == 0;
+    results[i].T_map_sensor = lidars[i].T_map_sensor;
+    results[i].doubt = "no other LiDAR has a place to judge it by; give rough ones with --near";
     if (!options.search[i] || lidars[i].fixed || places[i]) continue;
     lidars[i].left_out = true;  // where the site has it is no guess
-    results[i].T_map_sensor = lidars[i].T_map_sensor;
     results[i].doubt = "no place is found for it; give a rough one with --near";
   }
   JointOptions joint;
   joint.start_distance_m = kGuessDistance_m;
   joint.iterations = kGuessIterations;
   joint.voxel_size_m = kVoxel_m;
-  decide_trust(scans, reference, joint, &lidars, &results);
-  for (std::size_t i = 0; i < scans.size(); ++i)
-    if (options.search[i] && places[i] && places[i]->twin && results[i].trusted())
-      results[i].doubt = "another place fits almost as well; give a rough one with --near";
+  decide_trust(scans, reference, places, joint, &lidars, &results);
   return results;
 }
 

@@ -74,9 +74,8 @@ class Normals {
   /// Steps of all LiDARs; moves them. The largest one.
   double step() {
     hold();
-    const Eigen::LDLT<Eigen::MatrixXd> solver(H_);
-    const Eigen::VectorXd x = -solver.solve(g_);
-    if (options_.depth_errors) tell_doubt(solver);
+    solver_.compute(H_);
+    const Eigen::VectorXd x = -solver_.solve(g_);
     double largest = 0;
     for (std::size_t i = 0; i < lidars_.size(); ++i) {
       const Row own = x.segment<kUnknowns>(at(i));
@@ -91,6 +90,19 @@ class Normals {
       largest = std::max(largest, own.cwiseAbs().maxCoeff());
     }
     return largest;
+  }
+
+  /// Of the last step.
+  void tell_doubt() const {
+    const double unit = kAlike * kPairSd_m * kPairSd_m;
+    for (std::size_t i = 0; i < lidars_.size(); ++i) {
+      Eigen::MatrixXd own = Eigen::MatrixXd::Zero(size(), kUnknowns);
+      own.middleRows<kUnknowns>(at(i)).setIdentity();
+      const Block covariance = unit * solver_.solve(own).middleRows<kUnknowns>(at(i));
+      lidars_[i].covariance = covariance.topLeftCorner<6, 6>();
+      lidars_[i].error_sd = {std::sqrt(std::max(0.0, covariance(6, 6))),
+                             std::sqrt(std::max(0.0, covariance(7, 7)))};
+    }
   }
 
  private:
@@ -129,18 +141,7 @@ class Normals {
     }
   }
 
-  void tell_doubt(const Eigen::LDLT<Eigen::MatrixXd>& solver) {
-    const double unit = kAlike * kPairSd_m * kPairSd_m;
-    for (std::size_t i = 0; i < lidars_.size(); ++i) {
-      Eigen::MatrixXd own = Eigen::MatrixXd::Zero(size(), kUnknowns);
-      own.middleRows<kUnknowns>(at(i)).setIdentity();
-      const Block covariance = unit * solver.solve(own).middleRows<kUnknowns>(at(i));
-      lidars_[i].covariance = covariance.topLeftCorner<6, 6>();
-      lidars_[i].error_sd = {std::sqrt(std::max(0.0, covariance(6, 6))),
-                             std::sqrt(std::max(0.0, covariance(7, 7)))};
-    }
-  }
-
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
   static constexpr double kFixed = 1e12;
   std::vector<JointLidar>& lidars_;
   const JointOptions& options_;
@@ -175,7 +176,9 @@ void refine_together(const Reference* reference, std::vector<JointLidar>* lidars
       for (std::size_t j = 0; j < lidars->size(); ++j)
         if (i != j && !(*lidars)[j].left_out) normals.add_two(i, j, clouds, distance_m);
     }
-    if (normals.step() < kSmallStep && share >= 1.0) return;
+    const bool last = (normals.step() < kSmallStep && share >= 1.0) || iteration + 1 == options.iterations;
+    if (last && options.depth_errors) normals.tell_doubt();
+    if (last) return;
   }
 }
 

@@ -13,7 +13,7 @@ struct PoseEvidence {
   double residual_m = 0;        ///< RMSE along the normals, of its pairs (JointLidar)
   double conflict = 0;          ///< share of what it should see of the rest that lies in space it saw empty
   int seen = 0;                 ///< points of the rest that it should see
-  double sd_m = 0, sd_rad = 0;  ///< largest over the directions, by residuals alone
+  double sd_m = 0, sd_rad = 0;  ///< largest over the directions; `evidence_of`: by residuals alone
 };
 
 /// All but `residual_m`. `rest`: everything else that is known of the room, with normals towards whoever saw

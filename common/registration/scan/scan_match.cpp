@@ -200,18 +200,6 @@ double MotionGuess::squared_mahalanobis(const Pose& T_map_sensor_other) const {
   return liloc::squared_mahalanobis(off, covariance);
 }
 
-std::string_view name_of(ScanStop stop) {
-  switch (stop) {
-    case ScanStop::converged:
-      return "converged";
-    case ScanStop::too_few_pairs:
-      return "too few pairs";
-    case ScanStop::iteration_limit:
-      return "iteration limit";
-  }
-  return "unknown";
-}
-
 Result<ScanMatch> match_scan(const LocalMap& map, const std::vector<Surfel>& frame, const MotionGuess& guess,
                              StampNs now_ns, const ScanMatchOptions& options) {
   if (map.size() == 0) return fail("scan match: the local map is empty; insert a first frame");

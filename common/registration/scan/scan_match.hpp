@@ -1,6 +1,5 @@
 #pragma once
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "common/base/result.hpp"
@@ -53,7 +52,6 @@ enum class ScanStop {
   too_few_pairs,    ///< hardly a surfel of the frame has a plane near
   iteration_limit,  ///< `max_iterations` are over
 };
-[[nodiscard]] std::string_view name_of(ScanStop stop);
 
 struct ScanMatch {
   Pose T_map_sensor = Pose::Identity();

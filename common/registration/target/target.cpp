@@ -74,6 +74,17 @@ Cloud spread_points(const Cloud& cloud, std::size_t count, double voxel_size_m, 
   return thin;
 }
 
+/// The points alone.
+Cloud without(const Cloud& cloud, const std::vector<std::uint32_t>& left_out) {
+  std::vector<bool> kept(cloud.size(), true);
+  for (const std::uint32_t i : left_out)
+    if (i < kept.size()) kept[i] = false;
+  Cloud rest;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (kept[i]) rest.points.push_back(cloud.points[i]);
+  return rest;
+}
+
 }  // namespace
 
 struct Surfaces::Changes {
@@ -148,17 +159,6 @@ const ScoreField& DynamicRegions::field_coarse() const {
 Target make_target(const Cloud& cloud_map, std::vector<SightView> views, double voxel_size_m) {
   auto surfaces = std::make_shared<const Surfaces>(cloud_map, views, voxel_size_m);
   return {std::move(surfaces), std::move(views)};
-}
-
-/// The points alone.
-Cloud without(const Cloud& cloud, const std::vector<std::uint32_t>& left_out) {
-  std::vector<bool> kept(cloud.size(), true);
-  for (const std::uint32_t i : left_out)
-    if (i < kept.size()) kept[i] = false;
-  Cloud rest;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (kept[i]) rest.points.push_back(cloud.points[i]);
-  return rest;
 }
 
 Query make_query(const Cloud& cloud_sensor, const Camera* camera, const QueryOptions& options,

@@ -78,6 +78,15 @@ TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LocalizerLaw, testing::Range(1U, 6U));
 
+TEST(Localizer, WhoIsForgottenIsSearchedAnew) {
+  World world(1);
+  int k = 0;
+  while (k < 6 && !world.ask(k).verified()) ++k;
+  ASSERT_EQ(world.ask(k + 1).reason, Reason::confirmed);
+  world.localizer->forget_all();
+  EXPECT_NE(world.ask(k + 2).reason, Reason::confirmed) << "the same id and odom segment";
+}
+
 TEST(Localizer, RefusalsSayWhy) {
   World world(1);
   SpotReply reply = world.localizer->locate(world.request(0, world.truth(0)));

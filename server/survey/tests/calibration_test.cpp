@@ -36,8 +36,11 @@ class CalibrationLaw : public testing::TestWithParam<unsigned> {
 
 TEST_P(CalibrationLaw, WhoIsTrustedIsRight) {
   const auto results = calibrate(guessed(), nullptr, {{false, false, false}}).value();
-  for (std::size_t i = 0; i < results.size(); ++i)
-    if (results[i].trusted()) EXPECT_LT(distance_m(results[i].T_map_sensor, test::hung()[i]), 0.02) << i;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (results[i].trusted()) {
+      EXPECT_LT(distance_m(results[i].T_map_sensor, test::hung()[i]), 0.02) << i;
+    }
+  }
 }
 
 TEST_P(CalibrationLaw, OneInFogIsDoubtedAndMovesNobody) {

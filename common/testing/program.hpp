@@ -9,7 +9,7 @@ struct Outcome {
   std::string out;     ///< stdout and stderr
 };
 
-/// Runs a program with arguments as a shell takes them, to its end or for 30 s (exit code 124).
+/// Runs a program with arguments as a shell takes them, to its end or for two minutes (exit code 124).
 [[nodiscard]] Outcome run_program(const std::string& program, const std::string& arguments);
 
 }  // namespace liloc

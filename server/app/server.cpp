@@ -270,6 +270,7 @@ void Server::leave() {
   dispatcher_.reset();
   service_.reset();
   localizer_.forget_all();  // whom the credentials no longer let in must not be remembered
+  if (journal_) journal_->forget_all();
   ingest_.reset();
   status_publisher_.reset();
   participant_.reset();

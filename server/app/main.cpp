@@ -82,7 +82,7 @@ int run(int argc, char** argv) {
   if (options->page) {
     // Past the tail: who looks at the page must not read its token there.
     to_stderr(log::Level::info, fmt::format("page on {}", (*server)->page_url()));
-    if (!view::is_loopback(*options->page))
+    if (!web::is_loopback(*options->page))
       log::warning(
           "the page travels unencrypted: put a proxy with TLS before it where others share the network");
   }

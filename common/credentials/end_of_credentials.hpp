@@ -7,8 +7,9 @@
 
 namespace liloc {
 
-/// Says once a day what is wrong with the credentials of a program that runs on: what `warn_of` says, what makes
-/// their folder unusable, or that the folder has newer ones, which are read at the next start. Not thread-safe.
+/// Says once a day what is wrong with the credentials of a program that runs on: what `warn_of` says, what
+/// makes their folder unusable, or that the folder has newer ones, which are read at the next start. Not
+/// thread-safe.
 class EndOfCredentials {
  public:
   using Time = std::chrono::steady_clock::time_point;

@@ -18,8 +18,8 @@ class Painter {
   /// `board` outlives this.
   Painter(Source source, Board& board) : source_(std::move(source)), board_(board) {}
 
-  /// What has changed since the last time. The room is told every two seconds at most, trails every five, charts
-  /// every one: they change slowly and are large.
+  /// What has changed since the last time. The room is told every two seconds at most, trails every five,
+  /// charts every one: they change slowly and are large.
   void paint(Time now);
   /// Nobody looks: keeps nothing.
   void rest();

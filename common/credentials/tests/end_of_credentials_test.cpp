@@ -44,7 +44,8 @@ TEST_F(EndOf, ItIsToldOnceADay) {
 
 TEST_F(EndOf, ARenewedOneCountsWhenTheProgramIsStartedAgain) {
   ASSERT_TRUE(store.run("renew robot1 --days 100"));
-  EXPECT_THAT(said(24h), ElementsAre(HasSubstr("cert.pem was renewed; the one in use expires in 2 days: start")));
+  EXPECT_THAT(said(24h),
+              ElementsAre(HasSubstr("cert.pem was renewed; the one in use expires in 2 days: start")));
   end.emplace(store.party("robot1"), start);
   EXPECT_THAT(said(24h), IsEmpty());
 }

@@ -85,7 +85,8 @@ TEST(Diagnosis, EveryTroubleOfALidarHasItsRemedy) {
         {wire::LidarState::clock_off,
          "FAIL  edge1: ceiling0 has another clock, 37.00 s behind the site's; its frames are left out"},
         {static_cast<wire::LidarState>(8),
-         "warn  edge1: ceiling0 is in state 8, which this program does not know; the server is newer: update"}}) {
+         "warn  edge1: ceiling0 is in state 8, which this program does not know; the server is newer: "
+         "update"}}) {
     wire::ServerStatus status = healthy();
     status.lidars[0].state = state;
     status.lidars[0].last_error = "step is 3";

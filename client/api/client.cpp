@@ -7,6 +7,7 @@
 #include "client/api/public_types.hpp"
 #include "client/session/connection_watch.hpp"
 #include "common/base/log.hpp"
+#include "common/credentials/end_of_credentials.hpp"
 #include "common/wire/client_link.hpp"
 #include "common/wire/status.hpp"
 
@@ -46,13 +47,16 @@ struct Client::Impl {
   std::atomic<bool> connected = false;
   std::unique_ptr<Session> session;
   std::unique_ptr<ConnectionWatch> watch;
+  std::optional<EndOfCredentials> end_of_credentials;
   std::optional<wire::Participant> participant;
   std::unique_ptr<wire::Dispatcher> dispatcher;
   std::unique_ptr<wire::ClientLink> link;
 };
 
 void Client::Impl::look() {
-  watch->look(session->stats(), connected, std::chrono::steady_clock::now());
+  const auto now = std::chrono::steady_clock::now();
+  watch->look(session->stats(), connected, now);
+  end_of_credentials->look(now);
 }
 
 Status Client::Impl::connect(const Options& options) {
@@ -82,6 +86,7 @@ Status Client::Impl::connect(const Options& options) {
       ConnectionWatch::Names{id, options.frames_from,
                              fmt::format("domain {}, interface {}", options.domain, options.network_interface)},
       std::chrono::steady_clock::now());
+  end_of_credentials.emplace(options.credentials, std::chrono::steady_clock::now());
   dispatcher->every(std::chrono::seconds(1), [this] { look(); });
   // What cannot be read of a status says nothing of the codes; replies tell of another version.
   return wire::subscribe_status(*dispatcher, [this](const Result<wire::ServerStatus>& status) {

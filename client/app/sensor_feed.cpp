@@ -1,15 +1,11 @@
 #include "client/app/sensor_feed.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
 namespace liloc {
-namespace {
-
-using namespace std::chrono_literals;
-
-}  // namespace
-
 Status SensorFeed::subscribe_frames(wire::Dispatcher& sensors) {
   const SensorTopics& topics = options_.topics;
   if (topics.use_points)
@@ -19,9 +15,8 @@ Status SensorFeed::subscribe_frames(wire::Dispatcher& sensors) {
                                          [this](const Result<DepthImage>& image) { take_depth(image); });
       !ok)
     return ok;
-  return wire::subscribe_camera_info_at(sensors, topics.camera_info, [this](const Result<Camera>& camera) {
-    if (camera) check_camera(*camera);
-  });
+  return wire::subscribe_camera_info_at(sensors, topics.camera_info,
+                                        [this](const Result<Camera>& camera) { take_camera_info(camera); });
 }
 
 Status SensorFeed::subscribe(wire::Dispatcher& sensors) {
@@ -38,13 +33,9 @@ Status SensorFeed::subscribe(wire::Dispatcher& sensors) {
       [this](const Result<wire::StampedOdometry>& odometry) { take_odometry(odometry); });
 }
 
-/// At most one line in five seconds: a misconfigured driver sends a bad sample thirty times a second.
 void SensorFeed::complain(const std::string& what) {
-  ++refused_;
-  const auto now = std::chrono::steady_clock::now();
-  if (now - complained_ < 5s) return;
-  complained_ = now;
-  log::warning("{} ({} samples refused so far)", what, refused_);
+  if (const auto held = complaints_.pass(std::chrono::steady_clock::now()))
+    log::warning("{}{}", what, held_back(*held));
 }
 
 void SensorFeed::take_depth(const Result<DepthImage>& image) {
@@ -85,15 +76,20 @@ void SensorFeed::take_odometry(const Result<wire::StampedOdometry>& odometry) {
   if (!taken) complain(taken.error());
 }
 
-void SensorFeed::check_camera(const Camera& camera) {
+void SensorFeed::take_camera_info(const Result<Camera>& camera) {
+  if (!camera) {
+    if (!std::exchange(camera_unread_, true))
+      log::warning("camera_info is left out: {}; the intrinsics in use stay", camera.error().message);
+    return;
+  }
   const client::Camera& c = options_.client.camera;
-  const double off = std::max({std::abs(camera.fx - c.fx), std::abs(camera.fy - c.fy),
-                               std::abs(camera.cx - c.cx), std::abs(camera.cy - c.cy)});
-  const bool differs = camera.width != c.width || camera.height != c.height || off > 1.0;
+  const double off = std::max({std::abs(camera->fx - c.fx), std::abs(camera->fy - c.fy),
+                               std::abs(camera->cx - c.cx), std::abs(camera->cy - c.cy)});
+  const bool differs = camera->width != c.width || camera->height != c.height || off > 1.0;
   if (differs && !camera_differs_)
     log::warning(
         "camera_info ({}x{}, fx {:.1f}) differs from the intrinsics in use ({}x{}, fx {:.1f}): correct {}",
-        camera.width, camera.height, camera.fx, c.width, c.height, c.fx,
+        camera->width, camera->height, camera->fx, c.width, c.height, c.fx,
         options_.device_file.empty() ? "the driver" : options_.device_file);
   camera_differs_ = differs;
 }

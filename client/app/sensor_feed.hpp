@@ -1,8 +1,8 @@
 #pragma once
-#include <chrono>
 #include <string>
 
 #include "client/app/options.hpp"
+#include "common/base/line_limit.hpp"
 #include "common/geometry/camera.hpp"
 #include "common/wire/dispatcher.hpp"
 #include "common/wire/sensors.hpp"
@@ -19,20 +19,21 @@ class SensorFeed {
   /// To the topics that the options name. Errors: those of DDS.
   [[nodiscard]] Status subscribe(wire::Dispatcher& sensors);
 
- private:
-  [[nodiscard]] Status subscribe_frames(wire::Dispatcher& sensors);
+  /// What a topic brought, or why it cannot be used: told in the log, frames by the client.
   void take_depth(const Result<DepthImage>& image);
   void take_points(const Result<wire::StampedCloud>& cloud);
   void take_odometry(const Result<wire::StampedOdometry>& odometry);
   void take_imu(const Result<ImuSample>& sample);
-  void check_camera(const Camera& camera);
+  void take_camera_info(const Result<Camera>& camera);
+
+ private:
+  [[nodiscard]] Status subscribe_frames(wire::Dispatcher& sensors);
   void complain(const std::string& what);
 
   const DaemonOptions options_;
   client::Client& client_;
-  std::uint64_t refused_ = 0;
-  std::chrono::steady_clock::time_point complained_{};
-  bool camera_differs_ = false, frame_differs_ = false;
+  LineLimit complaints_;  ///< a misconfigured driver sends a bad sample thirty times a second
+  bool camera_unread_ = false, camera_differs_ = false, frame_differs_ = false;
 };
 
 }  // namespace liloc

@@ -92,7 +92,7 @@ std::optional<Side> side(Step step, Step end, bool after) {
 Pairs accelerations(const MotionRecord& record) {
   std::vector<Push> pushes;
   for (const SeenStep& step : record.seen())
-    if (record.seen().back().to_ns - step.to_ns < window_ns(record, kSignWindow))
+    if (is_recent(record, step, window_ns(record, kSignWindow)))
       pushes.push_back({step.from_ns, step.to_ns, step.moved_m, felt_force(record, step)});
   Pairs pairs;
   StampNs first_ns = 0;

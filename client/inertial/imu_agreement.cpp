@@ -48,7 +48,7 @@ std::pair<std::size_t, std::size_t> compared(const MotionRecord& record, const V
   if (seen.empty()) return {};
   const StampNs recent = window_ns(record, kRecent);
   for (auto step = seen.rbegin(); step != seen.rend() && agree + contradict < most; ++step) {
-    if (seen.back().to_ns - step->to_ns > recent) break;
+    if (!is_recent(record, *step, recent)) break;
     const auto felt = felt_turn(record, *step, bias_rad_s);
     if (!felt) continue;
     const Matrix3d turn = so3_exp(step->seconds() * step->rate_rad_s);
@@ -63,7 +63,7 @@ std::pair<std::size_t, std::size_t> compared(const MotionRecord& record, const V
 Pairs rates(const MotionRecord& record, StampNs ahead_ns, StampNs last) {
   Pairs rates;
   for (const SeenStep& step : record.seen())
-    if (const auto felt = record.felt(step, ahead_ns); felt && record.seen().back().to_ns - step.to_ns < last) {
+    if (const auto felt = record.felt(step, ahead_ns); felt && is_recent(record, step, last)) {
       rates.seen.push_back(step.rate_rad_s);
       rates.felt.push_back(felt->rate_rad_s);
       rates.seconds += step.seconds();

@@ -35,6 +35,10 @@ StampNs window_ns(const MotionRecord& record, StampNs at_least) {
   return std::max(at_least, from_seconds(kRareSteps * record.seen().back().seconds()));
 }
 
+bool is_recent(const MotionRecord& record, const SeenStep& step, StampNs window_ns) {
+  return record.seen().back().to_ns - step.to_ns < window_ns;
+}
+
 std::vector<FeltStep> felt_in_pieces(const MotionRecord& record, const SeenStep& step) {
   const int pieces = static_cast<int>(std::ceil(step.seconds() / kPieceS));
   std::vector<FeltStep> all;

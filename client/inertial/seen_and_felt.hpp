@@ -24,6 +24,8 @@ struct Fit {
 
 /// That long, or twelve steps where frames are rare. Something was seen.
 [[nodiscard]] StampNs window_ns(const MotionRecord& record, StampNs at_least);
+/// Whether a step ended less than `window_ns` before the last one that was seen.
+[[nodiscard]] bool is_recent(const MotionRecord& record, const SeenStep& step, StampNs window_ns);
 /// What was felt over a step, however long, in pieces over which a device turns evenly; empty: not all is
 /// known.
 [[nodiscard]] std::vector<FeltStep> felt_in_pieces(const MotionRecord& record, const SeenStep& step);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 
+#include "common/base/log_level.hpp"
 #include "common/base/text.hpp"
 
 namespace liloc::log {
@@ -38,11 +39,23 @@ class Call {
 
 }  // namespace
 
+const char* name_of(Level level) {
+  switch (level) {
+    case Level::debug:
+      return "debug";
+    case Level::info:
+      return "info";
+    case Level::warning:
+      return "warning";
+    case Level::error:
+      return "error";
+  }
+  return "info";
+}
+
 Result<Level> level_from(std::string_view name) {
-  if (name == "debug") return Level::debug;
-  if (name == "info") return Level::info;
-  if (name == "warning") return Level::warning;
-  if (name == "error") return Level::error;
+  for (const Level level : {Level::debug, Level::info, Level::warning, Level::error})
+    if (name == name_of(level)) return level;
   return fail("log level is '{}'; must be debug, info, warning or error", name);
 }
 

@@ -19,13 +19,13 @@ Status check_certificate(const Credentials& c, X509& certificate, X509& ca, X509
     case X509_V_OK:
       return {};
     case X509_V_ERR_CERT_HAS_EXPIRED:
-      return fail("{} has expired; deploy/credentials renew {}", file, c.name);
+      return fail("{} has expired; deploy/credentials renew {}, and copy its folder again", file, c.name);
     case X509_V_ERR_CERT_NOT_YET_VALID:
       return fail("{} is not valid yet; set this machine's clock", file);
     case X509_V_ERR_CERT_REVOKED:
       return fail("{} is revoked; deploy/credentials renew {}, if that was an error", file, c.name);
     case X509_V_ERR_CRL_HAS_EXPIRED:
-      return fail("{} has expired; deploy/credentials revoke or renew makes a new one", c.revoked().string());
+      return fail("{} has expired; deploy/credentials revoke makes a new one: copy that", c.revoked().string());
     case X509_V_ERR_UNABLE_TO_GET_CRL:
     case X509_V_ERR_CRL_SIGNATURE_FAILURE:
       return fail("{} is not of identity_ca.cert.pem; copy the whole folder anew", c.revoked().string());
@@ -111,8 +111,8 @@ Result<Credentials> read_credentials(const path& folder) {
 
 void warn_of(const Credentials& credentials, std::chrono::system_clock::time_point now) {
   if (const int days = days_left(credentials, now); days < kRenewDays)
-    log::warning("{} expires in {} days; deploy/credentials renew {}", credentials.certificate().string(), days,
-                 credentials.name);
+    log::warning("{} expires in {} days; deploy/credentials renew {}, and copy its folder again",
+                 credentials.certificate().string(), days, credentials.name);
   if (credentials.key_exposed) log::warning("{} can be read by others; chmod 600", credentials.key().string());
 }
 

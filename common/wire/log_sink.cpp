@@ -28,7 +28,7 @@ void on_line(void* argument, const dds_log_data_t* data) {
   if (!held) return;
   const bool serious = (data->priority & (DDS_LC_ERROR | DDS_LC_FATAL)) != 0;
   log::write(serious ? log::Level::error : log::Level::warning,
-             fmt::format("dds: {}{}", text, *held == 0 ? "" : fmt::format(" ({} lines were left out)", *held)));
+             fmt::format("dds: {}{}", text, held_back(*held)));
 }
 
 }  // namespace

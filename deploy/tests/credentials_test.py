@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """What deploy/credentials makes, and what it refuses.   credentials_test.py ROOT"""
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -22,11 +24,21 @@ class Credentials(unittest.TestCase):
         self.addCleanup(self.temporary.cleanup)
         self.store = pathlib.Path(self.temporary.name) / "store"
         self.authority = self.store / "authority"
+        self.environment = None  # this program's own
         self.made("init")
+
+    def break_openssl(self, command):
+        """From here on it fails in one of its commands."""
+        folder = pathlib.Path(self.temporary.name) / "bin"
+        folder.mkdir()
+        (folder / "openssl").write_text(f'#!/bin/sh\n[ "$1" != {command} ] || {{ echo no luck >&2; exit 1; }}\n'
+                                        f'PATH={os.environ["PATH"]} exec openssl "$@"\n')
+        (folder / "openssl").chmod(0o755)
+        self.environment = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"}
 
     def run_it(self, *words):
         return subprocess.run([ROOT / "deploy/credentials", "--keystore", self.store, *words], capture_output=True,
-                              text=True, check=False)
+                              text=True, check=False, env=self.environment)
 
     def made(self, *words):
         done = self.run_it(*words)
@@ -90,6 +102,16 @@ class Credentials(unittest.TestCase):
         self.assertIn("rt/camera/depth", self.signed("robot1"))
         self.assertNotEqual((self.store / "parties/robot1/key.pem").read_text(), key)
         self.assertRegex(self.made("list"), r"robot1 +device +valid +2\n")
+        self.made("renew", "robot1")
+        self.assertRegex(self.made("list"), r"robot1 +device +valid +2\n", "as long as last time")
+
+    def test_a_renewal_says_what_is_to_be_copied_and_when_it_counts(self):
+        for words in (("server", "edge"), ("device", "robot1")):
+            self.made(*words)
+        told = self.made("renew", "robot1")
+        self.assertIn("parties/robot1: copy the whole folder to the device again; start its program again.", told)
+        self.assertIn("stays valid until its end", told)
+        self.assertIn("a server that runs takes it within ten seconds", self.made("renew", "edge"))
 
     def test_a_revocation_reaches_every_folder_and_all_certificates_of_the_name(self):
         for words in (("server", "edge"), ("device", "robot1"), ("renew", "robot1"), ("revoke", "robot1")):
@@ -109,6 +131,35 @@ class Credentials(unittest.TestCase):
         self.made("revoke", "a")
         text = openssl("crl", "-in", self.store / "parties/z/crl.pem", "-noout", "-text").stdout
         self.assertEqual(text.count("Serial Number"), 1)
+
+    def test_a_keystore_may_stand_anywhere_and_move(self):
+        for odd in ("a b", "$HOME", "$(dir)x", 'one " two \' three', "back\\slash", "#x;y=z", "[ca]", "%s{dir}"):
+            self.store = pathlib.Path(self.temporary.name) / odd
+            for words in (("init",), ("device", "robot1"), ("revoke", "robot1"), ("renew", "robot1")):
+                self.made(*words)
+            self.assertRegex(self.made("list"), r"robot1 +device +valid")
+            self.store = self.store.rename(self.store.parent / "moved")
+            self.made("device", "robot2")
+            shutil.rmtree(self.store)
+
+    def test_an_init_that_fails_leaves_nothing_behind_but_what_was_there(self):
+        self.break_openssl("smime")
+        there = pathlib.Path(self.temporary.name) / "there"
+        there.mkdir(mode=0o755)
+        self.store = there / "deep/site"
+        self.refused(1, "openssl smime: no luck", "init")
+        self.assertEqual(list(there.iterdir()), [])
+        self.store = there
+        self.refused(1, "openssl smime: no luck", "init")
+        self.assertEqual((list(there.iterdir()), oct(there.stat().st_mode & 0o777)), ([], "0o755"))
+        self.environment = None
+        self.made("init")
+        self.made("device", "robot1")
+
+    def test_an_init_that_was_killed_is_told(self):
+        (self.authority / "crl.pem").unlink()
+        self.refused(1, "was left unfinished by an init that was killed; remove it", "init")
+        self.refused(1, "is no keystore; make one", "device", "robot1")
 
     def test_what_makes_no_sense_is_refused(self):
         self.made("server", "edge")

@@ -44,7 +44,10 @@ def read_for(seconds, viewers, slow, bytes_a_second):
     start, slow_bytes = time.monotonic(), 0
     while (past := time.monotonic() - start) < seconds:
         for key, _ in chosen.select(0.05):
-            counts[key.fileobj] += len(key.fileobj.recv(1 << 18))
+            count = len(key.fileobj.recv(1 << 18))
+            if count == 0:  # else it would count as readable for ever
+                raise SystemExit("page_viewers: the server has closed a viewer's connection")
+            counts[key.fileobj] += count
         if slow and slow_bytes < past * bytes_a_second:
             try:
                 slow_bytes += len(slow.recv(max(1, int(past * bytes_a_second) - slow_bytes)))

@@ -4,24 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/log_level.hpp"
+
 namespace liloc {
-namespace {
-
-const char* name_of(log::Level level) {
-  switch (level) {
-    case log::Level::debug:
-      return "debug";
-    case log::Level::info:
-      return "info";
-    case log::Level::warning:
-      return "warning";
-    case log::Level::error:
-      return "error";
-  }
-  return "info";
-}
-
-}  // namespace
 
 std::string json_line(std::chrono::system_clock::time_point at, log::Level level, std::string_view message) {
   const auto whole = std::chrono::floor<std::chrono::seconds>(at);
@@ -29,7 +14,7 @@ std::string json_line(std::chrono::system_clock::time_point at, log::Level level
   const std::time_t seconds = std::chrono::system_clock::to_time_t(whole);
   nlohmann::ordered_json line;
   line["time"] = fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(seconds), ms);
-  line["level"] = name_of(level);
+  line["level"] = log::name_of(level);
   line["message"] = message;
   return line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

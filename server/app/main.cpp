@@ -8,6 +8,7 @@
 #include "common/base/stop_signals.hpp"
 #include "common/command/log_setup.hpp"
 #include "common/credentials/credentials_watch.hpp"
+#include "common/credentials/end_of_credentials.hpp"
 #include "common/recording/recording.hpp"
 #include "server/app/json_line.hpp"
 #include "server/app/server.hpp"
@@ -22,32 +23,15 @@ std::string as_json(log::Level level, std::string_view line) {
 constexpr auto kLookEvery =
     std::chrono::seconds(2);  // at credentials: twice, and devices join anew within 10 s
 
-/// Once a day while the server runs.
-class EndOfCredentials {
- public:
-  void look(const std::string& folder) {
-    const auto now = std::chrono::steady_clock::now();
-    if (folder.empty() || now < next_) return;
-    next_ = now + std::chrono::hours(24);
-    if (const auto held = read_credentials(folder); !held)
-      log::error("{}", held.error().message);
-    else
-      warn_of(*held, std::chrono::system_clock::now());
-  }
-
- private:
-  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::hours(24);
-};
-
 /// Until a stop signal, which it returns. Errors: the network, when it joined again.
 Result<int> serve(Server& server, const ServerOptions& options, CredentialsWatch& credentials,
                   const StopSignals& signals) {
   const std::string& folder = options.seat.credentials;
-  EndOfCredentials end;
+  EndOfCredentials end(folder, std::chrono::steady_clock::now());
   bool changed = false, told = false;  // what cannot be read yet is looked at again: a key's owner may follow
   for (;;) {
     if (const int signal = signals.within(kLookEvery)) return signal;
-    end.look(folder);
+    end.look(std::chrono::steady_clock::now());
     if (credentials.changed()) changed = true, told = false;
     if (!changed) continue;
     if (const auto good = read_credentials(folder); !good) {
@@ -58,6 +42,7 @@ Result<int> serve(Server& server, const ServerOptions& options, CredentialsWatch
     changed = false;
     log::info("{} has changed: everybody joins anew", folder);
     if (const Status joined = server.rejoin(options); !joined) return tl::unexpected(joined.error());
+    end = EndOfCredentials(folder, std::chrono::steady_clock::now());
   }
 }
 
@@ -97,7 +82,7 @@ int run(int argc, char** argv) {
   if (options->page) {
     // Past the tail: who looks at the page must not read its token there.
     to_stderr(log::Level::info, fmt::format("page on {}", (*server)->page_url()));
-    if (!view::is_loopback(*options->page))
+    if (!web::is_loopback(*options->page))
       log::warning(
           "the page travels unencrypted: put a proxy with TLS before it where others share the network");
   }

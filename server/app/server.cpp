@@ -183,7 +183,7 @@ Status Server::open_page(const ServerOptions& options) {
     const auto token = view::token_from(options.page_token_file);
     if (!token) return fail("--web-token: {}", token.error().message);
     page.token = *token;
-  } else if (page.token.empty() && !view::is_loopback(page.address)) {
+  } else if (page.token.empty() && !web::is_loopback(page.address)) {
     page.token = view::new_token();
   }
   auto server = view::PageServer::start(page, {.site = global_cloud_.site(),
@@ -194,9 +194,7 @@ Status Server::open_page(const ServerOptions& options) {
   if (!server) return fail("--web: {}", server.error().message);
   page_ = std::move(*server);
   page_token_ = page.token;
-  const std::string& host = page.address.host;
-  page_url_ = fmt::format("http://{}:{}/", host.find(':') == std::string::npos ? host : "[" + host + "]",
-                          page_->port());
+  page_url_ = fmt::format("http://{}/", web::text_of({page.address.host, page_->port()}));
   if (!page.token.empty() && options.page_token_file.empty()) page_url_ += "?token=" + page.token;
   return {};
 }
@@ -270,6 +268,7 @@ void Server::leave() {
   dispatcher_.reset();
   service_.reset();
   localizer_.forget_all();  // whom the credentials no longer let in must not be remembered
+  if (journal_) journal_->forget_all();
   ingest_.reset();
   status_publisher_.reset();
   participant_.reset();

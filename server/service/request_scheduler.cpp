@@ -163,9 +163,9 @@ void RequestScheduler::work_on(const wire::Arrival& arrival) {
     sessions_.answered(arrival, reply);
     is_current = sessions_.is_current(arrival.from);
   }
-  // The client left or began anew meanwhile: what this request has left behind is nobody's.
-  if (!is_current && backend_.forget) backend_.forget(arrival.from.client_id);
   finish(arrival, std::move(reply));
+  // The client left or began anew meanwhile: what this request and its answer have left behind is nobody's.
+  if (!is_current && backend_.forget) backend_.forget(arrival.from.client_id);
 }
 
 std::optional<std::uint64_t> RequestScheduler::may_say(SourceLimit& lines, const std::string& of) {

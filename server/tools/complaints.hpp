@@ -67,6 +67,9 @@ inline constexpr std::array kComplaints{
     Complaint{"clock_corrected", Verdict::doubtful,
               "{server}: {lidar} has a clock {offset:.2f} s {side} the site's, which is corrected",
               "correct to some hundredths of a second: set the clock of its host by NTP or PTP"},
+    Complaint{"state_unknown", Verdict::doubtful,
+              "{server}: {lidar} is in state {number}, which this program does not know",
+              "the server is newer: update this program"},
 };
 
 [[nodiscard]] consteval std::size_t complaint(std::string_view name) {

@@ -22,6 +22,7 @@ constexpr Of<complaint("blind")> kBlind;
 constexpr Of<complaint("implausible")> kImplausible;
 constexpr Of<complaint("clock_off")> kClockOff;
 constexpr Of<complaint("clock_corrected")> kClockCorrected;
+constexpr Of<complaint("state_unknown")> kStateUnknown;
 
 Finding check_lidar(const wire::LidarHealth& lidar, const std::string& server) {
   const auto about = [&]<std::size_t Which>(std::integral_constant<std::size_t, Which>) {
@@ -32,11 +33,13 @@ Finding check_lidar(const wire::LidarHealth& lidar, const std::string& server) {
         fmt::arg("usual",
                  lidar.usual_range_m > 0 ? fmt::format(", it used to be {:.3g} m", lidar.usual_range_m) : ""),
         fmt::arg("offset", std::abs(lidar.clock_offset_s)),
-        fmt::arg("side", lidar.clock_offset_s > 0 ? "ahead of" : "behind"));
+        fmt::arg("side", lidar.clock_offset_s > 0 ? "ahead of" : "behind"),
+        fmt::arg("number", static_cast<int>(lidar.state)));
   };
   switch (lidar.state) {
     case wire::LidarState::ok:
-      break;
+      if (lidar.clock_corrected) return about(kClockCorrected);
+      return {Verdict::good, fmt::format("{}: {} ok at {:.1f} Hz", server, lidar.id, lidar.measured_hz)};
     case wire::LidarState::slow:
       return about(kSlow);
     case wire::LidarState::waiting:
@@ -52,8 +55,7 @@ Finding check_lidar(const wire::LidarHealth& lidar, const std::string& server) {
     case wire::LidarState::clock_off:
       return about(kClockOff);
   }
-  if (lidar.clock_corrected) return about(kClockCorrected);
-  return {Verdict::good, fmt::format("{}: {} ok at {:.1f} Hz", server, lidar.id, lidar.measured_hz)};
+  return about(kStateUnknown);
 }
 
 /// What the site names and the server does not.

@@ -23,7 +23,10 @@ class Audience {
   void leave(const Viewer* viewer);
 
   [[nodiscard]] const Board& board() const { return board_; }
-  [[nodiscard]] std::string scan_of(const std::string& client_id) const { return painter_.scan_of(client_id); }
+  /// As the painter's.
+  [[nodiscard]] std::shared_ptr<const std::string> scan_of(const std::string& client_id) {
+    return painter_.scan_of(client_id);
+  }
 
  private:
   void paint();

@@ -156,7 +156,8 @@ Connection::Response Connection::page(const Request& request) const {
   if (path_of(target) == "/scan") {
     const auto id = valid_id(in_query(target, "device").value_or(""), "device");
     if (!id) return words(http::status::not_found, id.error().message + "\n");
-    return response(http::status::ok, "application/octet-stream", audience_.scan_of(*id));
+    const auto scan = audience_.scan_of(*id);
+    return response(http::status::ok, "application/octet-stream", scan ? *scan : "");
   }
   const Asset* asset = asset_of(path_of(target));
   if (asset == nullptr) return words(http::status::not_found, "no such page\n");

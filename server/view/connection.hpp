@@ -28,8 +28,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
  private:
   void take(boost::system::error_code error);
   void answer(Response response);
-  /// Why it gets nothing, or empty.
   [[nodiscard]] std::string cookie() const;  ///< its name
+  /// Here and below: why it gets nothing, or empty.
   [[nodiscard]] std::optional<Response> refusal(const Request& request) const;
   [[nodiscard]] std::optional<Response> no_live_view(const Request& request) const;
   [[nodiscard]] Response page(const Request& request) const;

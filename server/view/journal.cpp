@@ -72,6 +72,11 @@ void Journal::forget(const std::string& client_id) {
   entries_.erase(client_id);
 }
 
+void Journal::forget_all() {
+  const std::scoped_lock lock(mutex_);
+  entries_.clear();
+}
+
 std::vector<std::shared_ptr<const DeviceState>> Journal::devices(Time now) const {
   std::vector<std::shared_ptr<const DeviceState>> told;
   const std::scoped_lock lock(mutex_);

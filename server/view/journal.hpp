@@ -52,6 +52,8 @@ class Journal {
   /// Any answer, as it leaves; after `located` for the same request.
   void answered(const SpotReply& reply, Time at);
   void forget(const std::string& client_id);
+  /// All devices; the chart stays.
+  void forget_all();
 
   /// By id; without those heard over a minute ago.
   [[nodiscard]] std::vector<std::shared_ptr<const DeviceState>> devices(Time now) const;

@@ -17,11 +17,6 @@ using boost::system::error_code;
 
 constexpr std::chrono::milliseconds kPause{100};  // where no connection can be taken: no file is free; by hand
 
-std::string text_of(const tcp::endpoint& endpoint) {
-  const std::string host = endpoint.address().to_string();
-  return fmt::format("{}:{}", endpoint.address().is_v6() ? "[" + host + "]" : host, endpoint.port());
-}
-
 }  // namespace
 
 struct PageServer::Impl {
@@ -38,7 +33,7 @@ struct PageServer::Impl {
     if (!error) acceptor.bind(here, error);
     if (!error) acceptor.listen(tcp::acceptor::max_listen_connections, error);
     if (!error) return {};
-    return fail("cannot listen on {} ({}); free the port, or give another address", text_of(here),
+    return fail("cannot listen on {} ({}); free the port, or give another address", text_of(options.address),
                 error.message());
   }
 
@@ -75,19 +70,11 @@ struct PageServer::Impl {
   std::jthread thread;                                           // last: it uses all of the above
 };
 
-bool is_loopback(const web::Address& address) {
-  error_code error;
-  const auto parsed = boost::asio::ip::make_address(address.host, error);
-  return !error && parsed.is_loopback();
-}
-
 PageServer::PageServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 PageServer::~PageServer() = default;
 
 Result<std::unique_ptr<PageServer>> PageServer::start(const PageOptions& options, Source source) {
-  error_code error;
-  boost::asio::ip::make_address(options.address.host, error);
-  if (error) return fail("'{}' is no numeric address", options.address.host);
+  if (const Status good = check(options.address); !good) return tl::unexpected(good.error());
   if (options.token.empty() && !is_loopback(options.address))
     return fail("{} can be reached by others; a token is needed", options.address.host);
   auto impl = std::make_unique<Impl>(options, std::move(source));

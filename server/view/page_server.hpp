@@ -7,7 +7,7 @@
 
 #include "common/base/result.hpp"
 #include "server/view/source.hpp"
-#include "server/web/web_server.hpp"
+#include "server/web/address.hpp"
 
 namespace liloc::view {
 
@@ -18,8 +18,6 @@ struct PageOptions {
   web::Address address;
   std::string token;  ///< asked of everyone; empty: of nobody, and the page is for browsers on this host alone
 };
-/// Whether nobody else reaches such an address.
-[[nodiscard]] bool is_loopback(const web::Address& address);
 
 class PageServer {
  public:

@@ -1,6 +1,7 @@
 #include "server/view/painter.hpp"
 
-#include "common/base/log.hpp"
+#include <algorithm>
+
 #include "common/codec/codec.hpp"
 #include "server/view/points_message.hpp"
 #include "server/view/text_messages.hpp"
@@ -12,6 +13,7 @@ using std::chrono::seconds;
 
 /// By hand.
 constexpr seconds kRoomEvery{2}, kTrailsEvery{5}, kChartsEvery{1};
+constexpr std::size_t kScansDrawn = 8;  // of those who are looked at in turn; at most 0.6 MB each
 
 /// Notes the time where it is so.
 bool due(std::optional<Painter::Time>& last, Painter::Time now, seconds every) {
@@ -20,27 +22,40 @@ bool due(std::optional<Painter::Time>& last, Painter::Time now, seconds every) {
   return true;
 }
 
-std::string moving_message(const Snapshot& moment) {
+/// Here and below: without points where there is nothing any more, so that nobody goes on showing what was.
+std::string moving_message(const Snapshot* moment) {
   std::vector<const Cloud*> clouds;
-  for (const auto& frame : moment.frames()) clouds.push_back(&frame->moving_map());
+  if (moment != nullptr)
+    for (const auto& frame : moment->frames()) clouds.push_back(&frame->moving_map());
   return points_message(Points::moving, clouds);
 }
 
-std::string room_message(const StitchedRoom& room) {  // not its indices, which nobody may need
+std::string room_message(const StitchedRoom* room) {  // not its indices, which nobody may need
   std::vector<const Cloud*> clouds;
-  for (const auto& part : room.parts()) clouds.push_back(&part->cloud_map());
+  if (room != nullptr)
+    for (const auto& part : room->parts()) clouds.push_back(&part->cloud_map());
   return points_message(Points::room, clouds);
+}
+
+/// Null where it cannot be decoded.
+std::shared_ptr<const std::string> scan_message(const UnlocatedScan& scan) {
+  const auto cloud_sensor = decode(scan.cloud_sensor);
+  if (!cloud_sensor) return nullptr;
+  const Cloud cloud_map = transformed(*scan.T_map_sensor, *cloud_sensor);
+  const Cloud* const all[] = {&cloud_map};
+  return std::make_shared<const std::string>(points_message(Points::scan, all));
 }
 
 }  // namespace
 
 void Painter::paint_points(Time now) {
   auto moment = source_.moment();
-  if (!moment || moment == shown_.moment) return;
-  board_.put(Part::moving, {moving_message(*moment), true});
-  if (moment->room() != shown_.room && due(shown_.room_at, now, kRoomEvery)) {
-    board_.put(Part::room, {room_message(*moment->room()), true});
-    shown_.room = moment->room();
+  if (moment != shown_.moment) board_.put(Part::moving, {moving_message(moment.get()), true});
+  auto room = moment ? moment->room() : nullptr;
+  if (!room) shown_.room_at.reset();  // the end of a room waits for no turn, nor does the one after it
+  if (room != shown_.room && (!room || due(shown_.room_at, now, kRoomEvery))) {
+    board_.put(Part::room, {room_message(room.get()), true});
+    shown_.room = std::move(room);
   }
   shown_.moment = std::move(moment);
 }
@@ -65,16 +80,16 @@ void Painter::paint(Time now) {
 void Painter::rest() {
   board_.clear();
   shown_ = {};
+  scans_.clear();
 }
 
-std::string Painter::scan_of(const std::string& client_id) const {
+std::shared_ptr<const std::string> Painter::scan_of(const std::string& client_id) {
   const auto scan = source_.journal->scan_of(client_id);
-  if (!scan || !scan->T_map_sensor) return {};
-  const auto cloud_sensor = decode(scan->cloud_sensor);
-  if (!cloud_sensor) return {};
-  const Cloud cloud_map = transformed(*scan->T_map_sensor, *cloud_sensor);
-  const Cloud* const all[] = {&cloud_map};
-  return points_message(Points::scan, all);
+  if (!scan || !scan->T_map_sensor) return nullptr;
+  const auto known = std::ranges::find_if(scans_, [&](const auto& drawn) { return drawn.of.lock() == scan; });
+  if (known != scans_.end()) return known->message;
+  if (scans_.size() == kScansDrawn) scans_.pop_front();
+  return scans_.emplace_back(Drawn{scan, scan_message(*scan)}).message;
 }
 
 }  // namespace liloc::view

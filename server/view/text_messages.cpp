@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/base/log_level.hpp"
+
 namespace liloc::view {
 namespace {
 
@@ -82,20 +84,6 @@ Json device_json(const DeviceState& device, std::chrono::steady_clock::time_poin
   return json;
 }
 
-const char* name_of(log::Level level) {
-  switch (level) {
-    case log::Level::debug:
-      return "debug";
-    case log::Level::info:
-      return "info";
-    case log::Level::warning:
-      return "warning";
-    case log::Level::error:
-      return "error";
-  }
-  return "info";
-}
-
 }  // namespace
 
 std::string site_message(const Site& site, const web::ServerFacts& facts) {
@@ -161,7 +149,7 @@ std::string log_message(const std::vector<LogLine>& lines) {
   Json told = Json::array();
   for (const LogLine& line : lines) {
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(line.at.time_since_epoch()).count();
-    told.push_back({ms, name_of(line.level), line.text});
+    told.push_back({ms, log::name_of(line.level), line.text});
   }
   return text_of({{"part", "log"}, {"lines", std::move(told)}});
 }

@@ -1,10 +1,8 @@
 #include "server/web/web_server.hpp"
 
-#include <arpa/inet.h>
 #include <civetweb.h>
 
 #include <array>
-#include <charconv>
 #include <exception>
 #include <string_view>
 
@@ -16,11 +14,6 @@ namespace {
 struct CloseContext {
   void operator()(mg_context* context) const { mg_stop(context); }
 };
-
-bool is_numeric(const std::string& host) {
-  in6_addr parsed{};
-  return inet_pton(AF_INET, host.c_str(), &parsed) == 1 || inet_pton(AF_INET6, host.c_str(), &parsed) == 1;
-}
 
 std::string_view reason_of(int status) {
   switch (status) {
@@ -79,30 +72,12 @@ struct WebServer::Impl {
   std::unique_ptr<mg_context, CloseContext> context;  // last: its threads use the pages
 };
 
-Result<Address> address_from(const std::string& text) {
-  Address address;
-  std::string_view port = text;
-  if (const auto colon = text.rfind(':'); colon != std::string::npos) {
-    address.host = text.substr(0, colon);
-    port.remove_prefix(colon + 1);
-    const bool bracketed = address.host.size() > 2 && address.host.front() == '[' && address.host.back() == ']';
-    if (bracketed) address.host = address.host.substr(1, address.host.size() - 2);
-    if (!is_numeric(address.host) || bracketed != (address.host.find(':') != std::string::npos))
-      return fail("give PORT, ADDRESS:PORT or [IPV6]:PORT with a numeric address, as 0.0.0.0:9464");
-  }
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);
-  if (error != std::errc{} || end != port.data() + port.size() || address.port < 1 || address.port > 65'535)
-    return fail("give PORT, ADDRESS:PORT or [IPV6]:PORT with a port of 1..65535");
-  return address;
-}
-
 WebServer::WebServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 WebServer::~WebServer() = default;
 
 Result<std::unique_ptr<WebServer>> WebServer::start(const Address& address, Pages pages) {
-  if (!is_numeric(address.host)) return fail("'{}' is no numeric address", address.host);
-  const bool v6 = address.host.find(':') != std::string::npos;
-  const std::string where = fmt::format("{}:{}", v6 ? "[" + address.host + "]" : address.host, address.port);
+  if (const Status good = check(address); !good) return tl::unexpected(good.error());
+  const std::string where = text_of(address);
   auto impl = std::make_unique<Impl>();
   impl->pages = std::move(pages);
   std::array<const char*, 11> options{"listening_ports",

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "common/base/result.hpp"
+#include "server/web/address.hpp"
 
 namespace liloc::web {
 
@@ -18,14 +18,6 @@ struct Page {
 };
 /// By path. Run on the web server's two threads, side by side. One that throws is answered by 500.
 using Pages = std::map<std::string, std::function<Page()>>;
-
-struct Address {
-  std::string host = "127.0.0.1";  ///< a numeric address of IPv4 or IPv6
-  int port = 0;                    ///< 0: a free one
-  bool operator==(const Address&) const = default;
-};
-/// PORT (on loopback), ADDRESS:PORT or [IPV6]:PORT, port 1..65535. The error says what is wrong with the text.
-[[nodiscard]] Result<Address> address_from(const std::string& text);
 
 class WebServer {
  public:

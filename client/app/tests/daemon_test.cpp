@@ -82,6 +82,24 @@ TEST(Daemon, CountsAndTellsFramesOfAnotherSize) {
   EXPECT_TRUE((*daemon)->stop());
 }
 
+TEST(SensorFeed, WhatIsLeftOutIsToldInOneLine) {
+  auto chosen = options({});
+  chosen.client.camera = {160, 120, 115, 115, 79.5, 59.5, 0.001};
+  auto robot = client::Client::create(chosen.client, {}, {});
+  ASSERT_TRUE(robot) << robot.error();
+  SensorFeed feed(chosen, *robot.value());
+  std::vector<std::string> lines;
+  log::set_sink([&](log::Level, std::string_view line) { lines.emplace_back(line); });
+  for (int i = 0; i < 3; ++i) {
+    feed.take_imu(fail("the force is not finite"));
+    feed.take_camera_info(fail("k is not [fx 0 cx; 0 fy cy; 0 0 1]"));
+  }
+  log::set_sink({});
+  EXPECT_THAT(lines, testing::ElementsAre("the force is not finite",
+                                          "camera_info is left out: k is not [fx 0 cx; 0 fy cy; 0 0 1]; the "
+                                          "intrinsics in use stay"));
+}
+
 TEST(Daemon, TellsRosTheOdometryOfADepthCamera) {
   const auto server = test::ByHeartServer::start(kDomain);
   ASSERT_TRUE(server) << server.error().message;

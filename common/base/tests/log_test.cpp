@@ -7,6 +7,8 @@
 #include <future>
 #include <thread>
 
+#include "common/base/log_level.hpp"
+
 namespace liloc::log {
 namespace {
 
@@ -15,6 +17,7 @@ TEST(Log, LevelsHaveTheirNames) {
   EXPECT_EQ(*level_from("info"), Level::info);
   EXPECT_EQ(*level_from("warning"), Level::warning);
   EXPECT_EQ(*level_from("error"), Level::error);
+  EXPECT_STREQ(name_of(Level::warning), "warning");
   EXPECT_THAT(level_from("Warn").error().message, testing::HasSubstr("'Warn'"));
 }
 

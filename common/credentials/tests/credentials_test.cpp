@@ -124,7 +124,20 @@ TEST_F(CredentialsOf, AnExpiredCertificateIsRefused) {
   std::this_thread::sleep_for(std::chrono::milliseconds(2100));
   const auto read = read_credentials(store->party("old"));
   ASSERT_FALSE(read);
-  EXPECT_THAT(read.error().message, HasSubstr("has expired; deploy/credentials renew old"));
+  EXPECT_THAT(read.error().message,
+              HasSubstr("has expired; deploy/credentials renew old, and copy its folder again"));
+}
+
+TEST_F(CredentialsOf, AnOutdatedRevocationListIsRefusedAndTheNextRevocationMakesANewOne) {
+  const std::string authority = store->authority().string();
+  ASSERT_TRUE(store->run("device robot3") &&
+              store->shell("LILOC_AUTHORITY=" + authority + " openssl ca -config " + authority +
+                           "/openssl.cnf -gencrl -crlsec 1 -out " + folder.string() + "/crl.pem"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  EXPECT_THAT(error(), HasSubstr("crl.pem has expired; deploy/credentials revoke makes a new one"));
+  ASSERT_TRUE(store->run("revoke robot3"));
+  take("crl.pem", store->party("robot1"));
+  EXPECT_EQ(error(), "");
 }
 
 TEST_F(CredentialsOf, ARevokedCertificateIsRefusedAndARenewedOneIsTaken) {

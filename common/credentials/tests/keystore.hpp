@@ -29,8 +29,8 @@ class Keystore {
   /// Any command, in the keystore's own folder for temporary files. Its output goes to a log there.
   [[nodiscard]] bool shell(const std::string& command) const {
     const std::string log = (folder_ / "log").string();
-    return std::system((command + " >>" + log + " 2>&1").c_str()) ==
-           0;  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
+    const std::string logged = command + " >>" + log + " 2>&1";
+    return std::system(logged.c_str()) == 0;  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
   }
   [[nodiscard]] std::filesystem::path party(const std::string& name, const std::string& site = "site") const {
     return folder_ / site / "parties" / name;

@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/wire/participant.hpp"
 #include "site_processes.hpp"
 
 namespace liloc::wire {
@@ -25,7 +26,7 @@ struct Packet {
   std::vector<unsigned char> bytes;
 };
 
-/// What of an Ethernet frame is for `port`, or the next one, by UDP over IPv4.
+/// What of an Ethernet frame is for `port`, where discovery comes, or the next one, for data, by UDP over IPv4.
 std::optional<Packet> payload_for(int port, const unsigned char* frame, std::size_t size) {
   iphdr ip{};
   udphdr udp{};
@@ -55,11 +56,6 @@ std::vector<Packet> record(int ear, int port) {
   return packets;
 }
 
-/// Discovery comes here, data at the next one.
-int server_port(int domain) {
-  return 7410 + 250 * domain;  // as common/wire/profile.cpp
-}
-
 /// An ear at the loopback interface; without the right to, it says so and waits for its end.
 int open_ear(Tally& tally) {
   const int ear = socket(AF_PACKET, SOCK_RAW, htons(ETH_P_ALL));
@@ -86,7 +82,8 @@ void read_packets(int domain, Tally& tally) {
 void replay_packets(int domain, Tally& tally) {
   const int port = server_port(domain);
   const int ear = open_ear(tally);
-  const std::vector<Packet> packets = record(ear, port);
+  std::vector<Packet> packets;
+  while (packets.empty()) packets = record(ear, port);
   close(ear);
   const int mouth = socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in to{};

@@ -156,8 +156,7 @@ TEST(ServerCredentials, ARevocationCutsADeviceOffWithinTenSecondsAndTheOtherIsSe
   ASSERT_TRUE(store.run("revoke robotB"));
   const auto revoked = std::chrono::steady_clock::now();
   ASSERT_TRUE(within(10s, [&] { return !b.served(); })) << server.log();
-  ASSERT_TRUE(
-      within(revoked + 10s - std::chrono::steady_clock::now() > 0s ? 10s : 0s, [&] { return a.served(); }));
+  ASSERT_TRUE(within(10s, [&] { return a.served(); })) << server.log();
   RecordProperty("rejoined_after_ms", static_cast<int>((std::chrono::steady_clock::now() - revoked) / 1ms));
   EXPECT_LT(std::chrono::steady_clock::now() - revoked, 10s);
   EXPECT_FALSE(within(3s, [&] { return b.served(); })) << "it tries again, and stays outside";

@@ -104,6 +104,10 @@ TEST(PageOfAServer, ShowsItsLidarItsDeviceAndWhyThatOneIsNotLocated) {
   told(browser, "log", [](const auto& json) { return json["lines"][0][2] == "a line"; });
   told(browser, "charts", [](const auto& json) { return json["verified"].size() == 120; });
   dispatcher->stop();
+  ASSERT_TRUE(server.rejoin(with_page()));
+  Browser after(server.page_port());
+  EXPECT_TRUE(told(after, "now", [](const auto&) { return true; })["devices"].empty())
+      << "whom new credentials may not let in is not shown";
   const int port = server.page_port();
   EXPECT_THAT(get(port, "/"), StartsWith("HTTP/1.1 200"));
   server.stop();

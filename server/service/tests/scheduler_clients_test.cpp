@@ -166,7 +166,9 @@ TEST(SchedulerClients, NothingIsKeptOfAClientThatLeftWhileItsRequestsWereInHand)
     return reply;
   };
   RequestScheduler scheduler({.workers = 1},
-                             {.locate = locate, .forget = [&](const std::string& id) { known.erase(id); }},
+                             {.locate = locate,
+                              .forget = [&](const std::string& id) { known.erase(id); },
+                              .on_answer = [&](const SpotReply& reply) { known.add(reply.client_id); }},
                              answers.sink());
   scheduler.submit(arrival("in work", 1));
   gate.wait_inside();

@@ -83,7 +83,10 @@ TEST(Diagnosis, EveryTroubleOfALidarHasItsRemedy) {
          "FAIL  edge1: ceiling0 measures implausible ranges, 0.6 m in the median, it used to be 2.4 m; is its "
          "depth_scale"},
         {wire::LidarState::clock_off,
-         "FAIL  edge1: ceiling0 has another clock, 37.00 s behind the site's; its frames are left out"}}) {
+         "FAIL  edge1: ceiling0 has another clock, 37.00 s behind the site's; its frames are left out"},
+        {static_cast<wire::LidarState>(8),
+         "warn  edge1: ceiling0 is in state 8, which this program does not know; the server is newer: "
+         "update"}}) {
     wire::ServerStatus status = healthy();
     status.lidars[0].state = state;
     status.lidars[0].last_error = "step is 3";

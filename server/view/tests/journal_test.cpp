@@ -120,6 +120,18 @@ TEST(Journal, TheGoneAndTheForgottenAreNotTold) {
   EXPECT_TRUE(journal.devices(kStart).empty());
 }
 
+TEST(Journal, WhenAllAreForgottenTheChartStays) {
+  Journal journal;
+  for (const char* id : {"a", "b"}) {
+    const auto r = request(id, 1);
+    answer(journal, r, refusal(r, Reason::not_found, ""));
+  }
+  journal.forget_all();
+  EXPECT_TRUE(journal.devices(kStart).empty());
+  EXPECT_EQ(journal.scan_of("a"), nullptr);
+  EXPECT_EQ(journal.columns(kStart).back().refused, 2U);
+}
+
 TEST(Journal, EveryAnswerCountsInTheChart) {
   Journal journal;
   journal.answered(refusal(request("a", 1), Reason::rate_limit, ""), kStart);

@@ -69,14 +69,5 @@ TEST(WebServer, AnAddressThatIsTakenIsNamedWithTheRemedy) {
   EXPECT_THAT(second.error().message, HasSubstr("free the port"));
 }
 
-TEST(WebAddress, IsAPortOrAnAddressWithOne) {
-  EXPECT_EQ(address_from("9464").value(), (Address{"127.0.0.1", 9464}));
-  EXPECT_EQ(address_from("0.0.0.0:80").value(), (Address{"0.0.0.0", 80}));
-  EXPECT_EQ(address_from("[::]:9464").value(), (Address{"::", 9464}));
-  for (const char* wrong : {"", "0", "65536", "94s", "9464,80", "localhost:80", ":80", "::1:80",
-                            "[127.0.0.1]:80", "1.2.3.4:", "[]:80", "0.0.0.0:80s"})
-    EXPECT_FALSE(address_from(wrong)) << wrong;
-}
-
 }  // namespace
 }  // namespace liloc::web

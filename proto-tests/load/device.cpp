@@ -10,7 +10,10 @@ namespace {
 
 constexpr std::size_t kMostPoses = 250;                     // of a request; the message holds 256
 constexpr double kWrong_m = 0.3, kWrong_rad = radians(10);  // off by more, an answer is wrong
-constexpr std::uint64_t kReplyBytes = 1000;                 // a reply has no sequence: all are about as long
+// The lag of a request that its own participant, not yet in the domain, kept from leaving: a timeout of a
+// client.
+constexpr double kNotJoined_ms = 4000;
+constexpr std::uint64_t kReplyBytes = 1000;  // a reply has no sequence: all are about as long
 
 RequestScheduleOptions schedule_of(const LoadOptions& options) {
   RequestScheduleOptions schedule;
@@ -137,7 +140,7 @@ void Device::tick(double planned_s) {
   const double left_s = clock_.now_s();
   const std::scoped_lock lock(mutex_);
   RequestRow& row = asked_[request->seq - 1].row;
-  row.lag_ms = 1e3 * (left_s - planned_s);
+  row.lag_ms = seat ? 1e3 * (left_s - planned_s) : kNotJoined_ms;
   if (!sent) return log::debug("{}: {}", plan_.id, sent.error().message);
   if (row.outcome == Outcome::unsent) row.outcome = Outcome::unanswered;  // its reply may have been quicker
   row_.sent_bytes += bytes_of(*request);

@@ -11,7 +11,7 @@ enum class Outcome : std::uint8_t { unsent, unanswered, verified, provisional, r
 
 struct RequestRow {
   double planned_s = 0;   ///< since the run's start
-  double lag_ms = 0;      ///< until it had left
+  double lag_ms = 0;      ///< by which the generator was late with it
   double latency_ms = 0;  ///< from planned_s to the reply, where one came
   Outcome outcome = Outcome::unsent;
   bool wrong = false;    ///< verified, and off by more than allowed

@@ -30,7 +30,7 @@ void add_latencies(const std::vector<RequestRow>& rows, LoadReport& report) {
     // What the server's silence kept from being sent has waited as long as what it left unanswered.
     const double ms = row.outcome <= Outcome::unanswered ? kTimeout_ms : row.latency_ms;
     all.push_back(ms);
-    if (row.outcome != Outcome::unsent) lags.push_back(row.lag_ms);
+    lags.push_back(row.lag_ms);
     if (!row.of_lost) tracked.push_back(ms);
   }
   if (all.empty()) return;

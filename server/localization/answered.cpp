@@ -37,7 +37,7 @@ Result<std::shared_ptr<const Spot>> spot_of(DeviceSession& session, const SpotRe
 Answer answer_of(DeviceSession& session, const std::shared_ptr<const Spot>& spot, bool spare_time) {
   Answer answer{refusal(spot->request(), Reason::none, ""), {}};
   answer.reply.gpc_stamp_ns = spot->gpc_stamp_ns();
-  answer.evidence = session.answer(spot->request(), spot, spare_time, &answer.reply);
+  answer.evidence = session.answer(spot, spare_time, &answer.reply);
   note_gravity(*spot, &answer.reply);
   if (!spot->trouble().empty()) answer.reply.text += "; " + spot->trouble();
   return answer;

@@ -72,8 +72,8 @@ void DeviceSession::refuse(const Found& found, SpotReply* reply) {
   reply->text = advised.text;
 }
 
-Evidence DeviceSession::answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                               bool spare_time, SpotReply* reply) {
+Evidence DeviceSession::answer(const std::shared_ptr<const Spot>& spot, bool spare_time, SpotReply* reply) {
+  const SpotRequest& request = spot->request();
   if (request.cold) return answer_cold(spot, reply);
   if (!segment_ || request.odom_segment != segment_->id)
     segment_.emplace(Segment{request.odom_segment, Tracks(verify_.tracks)});
@@ -81,7 +81,7 @@ Evidence DeviceSession::answer(const SpotRequest& request, const std::shared_ptr
     answer_as_paper(spot, reply);
     return {};
   }
-  if (segment_->followed) return answer_following(request, spot, spare_time, reply);
+  if (segment_->followed) return answer_following(spot, spare_time, reply);
   return answer_searching(spot, reply);
 }
 
@@ -166,7 +166,8 @@ Evidence DeviceSession::answer_searching(const std::shared_ptr<const Spot>& spot
 
 /// Refines the predicted pose and weighs the two; what the spot then shows there. Where free space contradicts
 /// the refinement the prediction is the better answer.
-Hypothesis DeviceSession::follow(const SpotRequest& request, const Spot& spot) {
+Hypothesis DeviceSession::follow(const Spot& spot) {
+  const SpotRequest& request = spot.request();
   Followed& followed = *segment_->followed;
   const Pose T_before_now = followed.T_odom_sensor.inverse() * request.T_odom_sensor;
   const double novelty = novelty_of(T_before_now, verify_.tracks.view);
@@ -229,9 +230,9 @@ bool DeviceSession::due_for_search(bool spare_time) const {
   return spots >= verify_.research_latest || (spots >= verify_.research_every && spare_time);
 }
 
-Evidence DeviceSession::answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                                         bool spare_time, SpotReply* reply) {
-  const Hypothesis here = follow(request, *spot);
+Evidence DeviceSession::answer_following(const std::shared_ptr<const Spot>& spot, bool spare_time,
+                                         SpotReply* reply) {
+  const Hypothesis here = follow(*spot);
   report_followed(here, reply);
   int& weak_in_a_row = segment_->weak_in_a_row;
   weak_in_a_row = reply->verified() ? 0 : weak_in_a_row + 1;

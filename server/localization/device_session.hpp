@@ -34,8 +34,7 @@ class DeviceSession {
   /// Fills status, reason, advice, pose and confidence of the reply. `spare_time`: there is time for a search
   /// that nobody waits for. Returns what the search of the room rested on; no places where this spot needed
   /// none.
-  Evidence answer(const SpotRequest& request, const std::shared_ptr<const Spot>& spot, bool spare_time,
-                  SpotReply* reply);
+  Evidence answer(const std::shared_ptr<const Spot>& spot, bool spare_time, SpotReply* reply);
   /// What it remembers; the next answer rests on it.
   [[nodiscard]] const std::optional<Segment>& segment() const { return segment_; }
 
@@ -55,13 +54,12 @@ class DeviceSession {
 
   Evidence answer_cold(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   Evidence answer_searching(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
-  Evidence answer_following(const SpotRequest& request, const std::shared_ptr<const Spot>& spot,
-                            bool spare_time, SpotReply* reply);
+  Evidence answer_following(const std::shared_ptr<const Spot>& spot, bool spare_time, SpotReply* reply);
   void answer_as_paper(const std::shared_ptr<const Spot>& spot, SpotReply* reply);
   static void refuse(const Found& found, SpotReply* reply);
   Found search_room(const std::shared_ptr<const Spot>& spot, Tracks* tracks,
                     const Hypothesis* followed = nullptr);
-  Hypothesis follow(const SpotRequest& request, const Spot& spot);
+  Hypothesis follow(const Spot& spot);
   Found search_beside(const std::shared_ptr<const Spot>& spot, const Hypothesis& here, SpotReply* reply);
   [[nodiscard]] bool due_for_search(bool spare_time) const;
   void report_followed(const Hypothesis& here, SpotReply* reply) const;

@@ -57,6 +57,15 @@ TEST(LoadReport, AGeneratorThatIsLateVoidsTheRun) {
   EXPECT_THAT(to_table({late}), HasSubstr("VOID"));
 }
 
+TEST(LoadReport, AGeneratorThatHasNotJoinedInTimeVoidsTheRun) {
+  Outcomes outcomes;
+  for (int i = 0; i < 97; ++i) outcomes.requests.push_back(row(Outcome::verified));
+  for (int i = 0; i < 3; ++i) outcomes.requests.push_back(row(Outcome::unsent, 0, 0.1));
+  EXPECT_TRUE(summarize(1, 20, outcomes).valid) << "sent in time, but no server was in sight";
+  for (int i = 0; i < 3; ++i) outcomes.requests.push_back(row(Outcome::unsent, 0, 4000));
+  EXPECT_FALSE(summarize(1, 20, outcomes).valid);
+}
+
 TEST(LoadReport, ARunWithoutAServerIsVoid) {
   const LoadReport r = summarize(1, 20, {{row(Outcome::unsent)}, {}});
   EXPECT_FALSE(r.valid);

@@ -150,7 +150,7 @@ class Trial {
     if (!spot) return refusal(request, Reason::bad_cloud, spot.error().message);
     if (!device.first_asked_ns) device.first_asked_ns = request.stamp_ns;
     SpotReply reply = refusal(request, Reason::none, "");
-    Evidence evidence = device.doubting->answer(request, *spot, true, &reply);
+    Evidence evidence = device.doubting->answer(*spot, true, &reply);
     for (std::size_t i = 1; i < evidence.places.size(); ++i) {
       const Pose& T = evidence.T_map_sensors[i];
       evidence.places[i].sd_m =

@@ -16,8 +16,8 @@ struct EngineOptions {
   std::string client_id;
   Camera camera;
   double min_range_m = 0.25, max_range_m = 8.5;
-  double voxel_size_m = 0.05;  ///< paper, section 3.1.5
-  StampNs interval_ns = kRequestInterval;  ///< upper bound between global registrations
+  double voxel_size_m = 0.05;                ///< paper, section 3.1.5
+  StampNs interval_ns = kRequestInterval;    ///< upper bound between global registrations
   StampNs reply_timeout_ns = from_ms(4000);  ///< a request without an answer for so long counts as unanswered
   LocalMethod local = LocalMethod::cloud;
   std::optional<Pose> T_imu_sensor;  ///< there is an IMU exactly where this is set

@@ -46,7 +46,8 @@ struct LocalPose {
   bool informative = true;
 };
 
-/// "Where am I?", asked every `kRequestInterval`: the LPC of one frame and how the device moved since the last request.
+/// "Where am I?", asked every `kRequestInterval`: the LPC of one frame and how the device moved since the last
+/// request.
 struct SpotRequest {
   std::string client_id;
   std::uint64_t seq = 0;           ///< rises by one per request of a client session
@@ -77,25 +78,26 @@ struct SpotRequest {
 enum class SpotStatus : std::uint8_t { verified = 1, provisional = 2, refused = 3 };
 
 /// Why a reply is what it is. Ids are added, never reused. With the paper's verification (`--verify paper`)
-/// `confirmed`: at least two of its three checks hold, or one that this spot is part of; `corrected`: one holds,
-/// and this spot is the odd one; `awaiting_spots`: fewer than three spots; `inconsistent`: no check holds. With
+/// `confirmed`: at least two of its three checks hold, or one that this spot is part of; `corrected`: one
+/// holds, and this spot is the odd one; `awaiting_spots`: fewer than three spots; `inconsistent`: no check
+/// holds. With
 /// `--verify none` every pose that is found is `confirmed`.
 enum class Reason : std::uint8_t {
-  none = 0,               ///< not decided yet; no server sends it
-  confirmed = 1,          ///< verified: this spot's search led there too, or the pose followed so far holds on
-  conclusive = 2,         ///< verified: by the first search of its segment alone, or cold
-  corrected = 3,          ///< verified: elsewhere than this spot's own search, or than the pose followed so far
-  awaiting_spots = 10,    ///< provisional: few searches so far and nothing else is amiss; or cold
-  ambiguous = 11,         ///< provisional: this spot's search led to the likeliest place; not likely enough
-  inconsistent = 12,      ///< provisional: the same, but this spot's search led elsewhere; see the advice for why
-  weak = 13,              ///< provisional: of a pose that was verified before, which is in doubt by now
-  no_gpc = 20,            ///< refused: no ceiling frame within 100 ms of the request's stamp
-  not_found = 21,         ///< refused: no pose fits, or the server failed
-  superseded = 22,        ///< refused: a newer request of the same client took its place, or the client left
-  overloaded = 23,        ///< refused: the queue was full and this was its oldest; or a search took too long
-  late = 24,              ///< refused: a request as new as this was answered already
-  bad_request = 25,       ///< refused: a value out of range; `text` names it
-  bad_cloud = 26,         ///< refused: the LPC could not be decoded, or has too few points
+  none = 0,             ///< not decided yet; no server sends it
+  confirmed = 1,        ///< verified: this spot's search led there too, or the pose followed so far holds on
+  conclusive = 2,       ///< verified: by the first search of its segment alone, or cold
+  corrected = 3,        ///< verified: elsewhere than this spot's own search, or than the pose followed so far
+  awaiting_spots = 10,  ///< provisional: few searches so far and nothing else is amiss; or cold
+  ambiguous = 11,       ///< provisional: this spot's search led to the likeliest place; not likely enough
+  inconsistent = 12,    ///< provisional: the same, but this spot's search led elsewhere; see the advice for why
+  weak = 13,            ///< provisional: of a pose that was verified before, which is in doubt by now
+  no_gpc = 20,          ///< refused: no ceiling frame within 100 ms of the request's stamp
+  not_found = 21,       ///< refused: no pose fits, or the server failed
+  superseded = 22,      ///< refused: a newer request of the same client took its place, or the client left
+  overloaded = 23,      ///< refused: the queue was full and this was its oldest; or a search took too long
+  late = 24,            ///< refused: a request as new as this was answered already
+  bad_request = 25,     ///< refused: a value out of range; `text` names it
+  bad_cloud = 26,       ///< refused: the LPC could not be decoded, or has too few points
   protocol_version = 27,  ///< refused: client and server speak different versions
   identity = 28,          ///< refused: client_id is not the one bound to the sender's partition
   rate_limit = 29,        ///< refused: the client asks more often than the server allows (`--max-rate`)

@@ -10,10 +10,10 @@ namespace liloc::load {
 
 /// What `liloc load` can be asked for. Times in seconds since the run's start unless a name says otherwise.
 struct LoadOptions {
-  std::filesystem::path out;       ///< load.json, load.svg, site.json and server.log go there
-  std::filesystem::path programs;  ///< folder of liloc-server
-  std::vector<int> clients{20};    ///< a run for each, 1..1000
-  double seconds = 30;             ///< measured, after the warm-up
+  std::filesystem::path out;                     ///< load.json, load.svg, site.json and server.log go there
+  std::filesystem::path programs;                ///< folder of liloc-server
+  std::vector<int> clients{20};                  ///< a run for each, 1..1000
+  double seconds = 30;                           ///< measured, after the warm-up
   double interval_ms = to_ms(kRequestInterval);  ///< between a device's requests
   std::uint64_t seed = 7;
   sim::SiteKind kind = sim::SiteKind::office;

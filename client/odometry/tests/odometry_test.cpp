@@ -26,7 +26,8 @@ OdometryStep step_at(Odometry& odometry, const scene::BoxRoom& room, const Pose&
 OdometryStep walked_into_doubt(Odometry& odometry) {
   OdometryStep step;
   for (int i = 0; i < 60 && !step.doubtful; ++i)
-    step = step_at(odometry, scene::corridor(), scene::looking({0.02 * i, 1, 1.2}, 1.5707963, 0.4), stamp_of(i));
+    step =
+        step_at(odometry, scene::corridor(), scene::looking({0.02 * i, 1, 1.2}, 1.5707963, 0.4), stamp_of(i));
   return step;
 }
 

@@ -7,7 +7,6 @@
 namespace liloc {
 namespace {
 
-constexpr int kLargestSide = 8192;  // no depth camera has as many pixels; by hand
 // A pinhole image is hardly wider than that; a long lens on a short side (a LiDAR of few rows) stays above the
 // least.
 constexpr double kWidest_deg = 170, kNarrowest_deg = 1;

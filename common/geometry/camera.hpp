@@ -9,6 +9,8 @@
 
 namespace liloc {
 
+constexpr int kLargestSide = 8192;  ///< of an image, in pixels: no depth camera has as many; by hand
+
 /// Pinhole intrinsics of a depth sensor, in pixels; optical frame: x right, y down, z forward.
 struct Camera {
   int width = 0, height = 0;

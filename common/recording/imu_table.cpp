@@ -20,7 +20,7 @@ bool ImuTable::add(const ImuSample& sample) {
   if (sample.stamp_ns <= last_ns_) return false;
   last_ns_ = sample.stamp_ns;
   ++rows_;
-  out_ << imu_row(sample);
+  out_ << imu_row(sample) << std::flush;  // a killed recorder leaves whole rows
   return true;
 }
 

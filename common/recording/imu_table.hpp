@@ -1,5 +1,5 @@
 #pragma once
-// imu.csv, row by row as samples come. Not thread-safe.
+// imu.csv, row by row as samples come; each is on disk before the next one. Not thread-safe.
 #include <filesystem>
 #include <fstream>
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "common/geometry/camera_info.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/wire/convert_header.hpp"
 #include "common/wire/convert_sensors.hpp"
@@ -7,12 +8,9 @@
 namespace liloc::wire {
 namespace {
 
-constexpr std::uint32_t kMaxSide = 8192;    // as common/geometry/camera.cpp has it
-constexpr std::uint32_t kMostBinning = 16;  // of sensors; by hand
-
 Status check_image(const sensor_msgs_msg_dds__Image_& m, std::uint64_t pixel_bytes) {
-  if (m.width < 1 || m.width > kMaxSide || m.height < 1 || m.height > kMaxSide)
-    return fail("image is {} x {}, must be 1..{} each way", m.width, m.height, kMaxSide);
+  if (m.width < 1 || m.width > kLargestSide || m.height < 1 || m.height > kLargestSide)
+    return fail("image is {} x {}, must be 1..{} each way", m.width, m.height, kLargestSide);
   if (m.step < m.width * pixel_bytes)
     return fail("step is {}, {} pixels need {}", m.step, m.width, m.width * pixel_bytes);
   if (m.data._length != std::uint64_t{m.step} * m.height)
@@ -25,44 +23,6 @@ std::uint16_t units_of(float metres, double depth_scale_m) {
   const double units = static_cast<double>(metres) / depth_scale_m;
   return std::isfinite(units) && units > 0 && units < 65534.5 ? static_cast<std::uint16_t>(std::lround(units))
                                                               : 0;
-}
-
-/// Of the whole rectified image: p where it is set, k of an image that was never anything else.
-Result<Camera> intrinsics_of(const sensor_msgs_msg_dds__CameraInfo_& m) {
-  const int width = static_cast<int>(m.width), height = static_cast<int>(m.height);
-  if (m.p[0] != 0) {
-    if (m.p[1] != 0 || m.p[4] != 0 || m.p[8] != 0 || m.p[9] != 0 || m.p[10] != 1)
-      return fail("p is not [fx 0 cx tx; 0 fy cy ty; 0 0 1 0]; publish the intrinsics of the rectified image");
-    return Camera{width, height, m.p[0], m.p[5], m.p[2], m.p[6]};
-  }
-  if (m.k[1] != 0 || m.k[3] != 0 || m.k[6] != 0 || m.k[7] != 0 || m.k[8] != 1)
-    return fail("k is not [fx 0 cx; 0 fy cy; 0 0 1]; publish the intrinsics of the rectified image");
-  return Camera{width, height, m.k[0], m.k[4], m.k[2], m.k[5]};
-}
-
-/// The part of the image that is sent, and the pixels that are sent as one (as image_geometry has it).
-Result<Camera> in_image(Camera camera, const sensor_msgs_msg_dds__CameraInfo_& m) {
-  const auto& roi = m.roi;
-  if (roi.width != 0 || roi.height != 0) {
-    if (roi.width == 0 || roi.height == 0 || std::uint64_t{roi.x_offset} + roi.width > m.width ||
-        std::uint64_t{roi.y_offset} + roi.height > m.height)
-      return fail("camera_info has a roi of {} x {} at {}, {}, beyond the image of {} x {}", roi.width,
-                  roi.height, roi.x_offset, roi.y_offset, m.width, m.height);
-    camera.width = static_cast<int>(roi.width);
-    camera.height = static_cast<int>(roi.height);
-    camera.cx -= roi.x_offset;
-    camera.cy -= roi.y_offset;
-  }
-  const std::uint32_t bin_x = std::max(m.binning_x, 1U), bin_y = std::max(m.binning_y, 1U);
-  if (bin_x > kMostBinning || bin_y > kMostBinning)
-    return fail("camera_info has binning {} x {}, must be at most {}", bin_x, bin_y, kMostBinning);
-  camera.width /= static_cast<int>(bin_x);
-  camera.height /= static_cast<int>(bin_y);
-  camera.fx /= bin_x;
-  camera.cx /= bin_x;
-  camera.fy /= bin_y;
-  camera.cy /= bin_y;
-  return camera.validated("camera_info");
 }
 
 }  // namespace
@@ -95,10 +55,15 @@ Result<DepthImage> from_wire(const sensor_msgs_msg_dds__Image_& m, double depth_
 
 Result<Camera> from_wire(const sensor_msgs_msg_dds__CameraInfo_& m) {
   if (const auto stamp_ns = stamp_of(m.header); !stamp_ns) return tl::unexpected(stamp_ns.error());
-  if (m.width < 1 || m.width > kMaxSide || m.height < 1 || m.height > kMaxSide)
-    return fail("camera_info is {} x {}, must be 1..{} each way", m.width, m.height, kMaxSide);
-  if (m.k[0] == 0) return fail("camera_info has no intrinsics (k is 0): calibrate the camera");
-  return intrinsics_of(m).and_then([&](const Camera& full) { return in_image(full, m); });
+  CameraInfo info;
+  info.height = m.height;
+  info.width = m.width;
+  std::ranges::copy(m.k, info.k.begin());
+  std::ranges::copy(m.p, info.p.begin());
+  info.binning_x = m.binning_x;
+  info.binning_y = m.binning_y;
+  info.roi = {m.roi.x_offset, m.roi.y_offset, m.roi.height, m.roi.width};
+  return camera_of(info);
 }
 
 bool distorted(const sensor_msgs_msg_dds__CameraInfo_& m) {

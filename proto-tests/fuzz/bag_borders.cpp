@@ -21,13 +21,6 @@ Status status_of(const Result<T>& result) {
   return result ? Status() : tl::unexpected(result.error());
 }
 
-std::string info_seed() {
-  Cdr out;
-  out.header("camera").put(std::uint32_t{1}).put(std::uint32_t{2}).text("plumb_bob").put(std::uint32_t{0});
-  for (const double k : {2.0, 0.0, 0.5, 0.0, 2.0, 0.5, 0.0, 0.0, 1.0}) out.put(k);
-  return out.done();
-}
-
 std::string cloud_seed() {
   Cdr out;
   out.header("lidar").put(std::uint32_t{1}).put(std::uint32_t{2}).put(std::uint32_t{3});
@@ -100,7 +93,9 @@ std::vector<Border> bag_borders() {
        .seeds = {bags::written::image("16UC1", 2, 1, "abcd"), bags::written::image("32FC1", 1, 1, "abcd")},
        .read = read_image},
       {.name = "bag-camera-info",
-       .seeds = {info_seed()},
+       .seeds = {bags::written::camera_info(2, 1, {2, 0, 0.5, 0, 2, 0.5, 0, 0, 1}),
+                 bags::written::camera_info(8, 4, {8, 0, 4, 0, 8, 2, 0, 0, 1},
+                                            {8, 0, 4, 0, 0, 8, 2, 0, 0, 0, 1, 0}, 2, {2, 0, 4, 4})},
        .read = [](const auto& bytes) { return status_of(bags::camera_info(bytes)); }},
       {.name = "bag-imu",
        .seeds = {bags::written::imu({0.1, 0.2, 0.3}, {0.5, -0.5, 9.75})},

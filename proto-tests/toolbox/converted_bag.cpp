@@ -1,5 +1,8 @@
 #include "proto-tests/toolbox/converted_bag.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <cstdlib>
 #include <system_error>
 #include <utility>
@@ -31,8 +34,9 @@ Status ConvertedBag::take(replay::ReplayOptions& options, BagArguments bag) {
   if (mkdtemp(pattern.data()) == nullptr) return fail("{}: cannot be made; set TMPDIR to a folder", pattern);
   folder_ = pattern;
   const fs::path recording = folder_ / "recording";
-  if (const auto converted = bags::convert_bag(given, recording, *convert); !converted)
-    return tl::unexpected(converted.error());
+  const auto converted = bags::convert_bag(given, recording, *convert);
+  if (!converted) return tl::unexpected(converted.error());
+  for (const std::string& line : left_out_lines(*converted)) fmt::print(stderr, "liloc: replay: {}\n", line);
   options.recording = recording;
   return {};
 }

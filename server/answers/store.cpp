@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::string_view kExtension = ".answer";
 
-/// Stamps stand first and have equally many digits, so that names sort by time.
+/// Stamps stand first and have equally many digits, so that a listing sorts by them.
 std::string file_name(const SpotRequest& request) {
   return fmt::format("{:020}-{}-{}{}", request.match_stamp_ns(), request.client_id, request.seq, kExtension);
 }
@@ -29,17 +29,22 @@ bool is_ours(const fs::path& path) {
 struct Kept {
   fs::path path;
   std::uintmax_t bytes = 0;
+  fs::file_time_type written;
 };
 
+/// By when they were written: stamps are the devices', whose clocks may run ahead.
 std::vector<Kept> newest_first(const fs::path& folder) {
   std::vector<Kept> kept;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::error_code gone;
+    if (!is_ours(it->path())) continue;
+    std::error_code gone, unknown;
     const auto bytes = fs::file_size(it->path(), gone);
-    if (!gone && is_ours(it->path())) kept.push_back({it->path(), bytes});
+    const auto written = fs::last_write_time(it->path(), unknown);
+    if (!gone && !unknown) kept.push_back({it->path(), bytes, written});
   }
-  std::ranges::sort(kept, std::ranges::greater{}, [](const Kept& k) { return k.path.filename().string(); });
+  std::ranges::sort(kept, std::ranges::greater{},
+                    [](const Kept& k) { return std::pair(k.written, k.path.filename().string()); });
   return kept;
 }
 

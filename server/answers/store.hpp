@@ -24,7 +24,8 @@ struct StoreOptions {
 /// "DIR" or "DIR:refused", "DIR:wrong", "DIR:all". Error: no folder is named.
 [[nodiscard]] Result<StoreOptions> store_options_from(std::string_view text);
 
-/// Writes DIR/<stamp>-<client>-<seq>.answer, and removes the oldest beyond the bounds, earlier runs' included.
+/// Writes DIR/<stamp>-<client>-<seq>.answer, and removes what was written first beyond the
+/// bounds, earlier runs' included.
 /// Not thread-safe.
 class AnswerStore {
  public:

@@ -1,6 +1,7 @@
 #include "server/tools/bag_options.hpp"
 
 #include "common/command/checks.hpp"
+#include "common/command/text.hpp"
 
 namespace liloc::toolbox {
 namespace {
@@ -31,6 +32,14 @@ Result<bags::ConvertOptions> BagArguments::options() const {
   options.world_frame = world;
   options.still_seconds = still_seconds;
   return options;
+}
+
+std::vector<std::string> left_out_lines(const bags::Converted& converted) {
+  std::vector<std::string> lines;
+  for (const auto& [topic, of] : converted.left_out)
+    lines.push_back(command::one_line(fmt::format(
+        "{}: {} messages cannot be used and are left out; the first {}", topic, of.messages, of.first)));
+  return lines;
 }
 
 void add_bag_options(CLI::App& command, BagArguments& arguments) {

@@ -21,6 +21,9 @@ struct BagArguments {
   [[nodiscard]] Result<bags::ConvertOptions> options() const;
 };
 
+/// A line for each topic of which messages were left out, e.g. for a log.
+[[nodiscard]] std::vector<std::string> left_out_lines(const bags::Converted& converted);
+
 /// All but --device, which means something else to each command.
 void add_bag_options(CLI::App& command, BagArguments& arguments);
 

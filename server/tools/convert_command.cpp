@@ -28,6 +28,7 @@ Status convert_bag(const ConvertArguments& arguments, const Stopped& stopped) {
   const auto converted = bags::convert_bag(arguments.in, arguments.out, *options);
   if (!converted) return tl::unexpected(converted.error());
   for (const auto& [topic, count] : converted->messages) fmt::print("{}: {}\n", topic, count);
+  for (const std::string& line : left_out_lines(*converted)) fmt::print("{}\n", line);
   return {};
 }
 

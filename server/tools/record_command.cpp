@@ -74,12 +74,14 @@ int run(const RecordArguments& arguments) {
   const StopSignals signals;
   const auto sensors = read_sensors(arguments);
   if (!sensors) return complain(sensors.error(), kBadUsage);
+  if (const Status fine = Recorder::check(sensors->site, sensors->devices, arguments.out); !fine)
+    return complain(fine.error(), kBadUsage);
   const auto participant = wire::Participant::create(arguments.seat);
   if (!participant) return complain(participant.error(), kFailed);
   auto dispatcher = wire::Dispatcher::create(*participant);
   if (!dispatcher) return complain(dispatcher.error(), kFailed);
   const auto recorder = Recorder::create(**dispatcher, sensors->site, sensors->devices, arguments.out);
-  if (!recorder) return complain(recorder.error(), kBadUsage);
+  if (!recorder) return complain(recorder.error(), kFailed);
   (*dispatcher)->start();
   fmt::print("recording on domain {}; Ctrl-C ends it\n", arguments.seat.domain);
   std::fflush(stdout);
@@ -107,6 +109,8 @@ void add_record(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--interface", arguments->seat.interface, "Network interface: name, address or auto")
       ->capture_default_str();
+  command->add_option("--credentials", arguments->seat.credentials,
+                      "Folder of deploy/credentials of a server, which may hear everybody");
   command->add_option("--seconds", arguments->seconds, "How long; 0: until Ctrl-C")
       ->check(command::in_range(0.0, 1e6))
       ->capture_default_str();

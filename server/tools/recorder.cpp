@@ -1,5 +1,6 @@
 #include "server/tools/recorder.hpp"
 
+#include <set>
 #include <system_error>
 
 #include "common/geometry/depth.hpp"
@@ -14,15 +15,25 @@ constexpr int kWriters = 2;  // a core encodes some 1500 images of 320 x 240 a s
 
 }  // namespace
 
-Result<std::unique_ptr<Recorder>> Recorder::create(wire::Dispatcher& dispatcher, const Site& site,
-                                                   const std::vector<DeviceInfo>& devices,
-                                                   const fs::path& out) {
+Status Recorder::check(const Site& site, const std::vector<DeviceInfo>& devices, const fs::path& out) {
   std::error_code error;
   if (fs::exists(out, error) && (!fs::is_directory(out, error) || !fs::is_empty(out, error)))
     return fail("{}: is there already; name a new folder", out.string());
+  std::set<std::string> ids;
+  for (const GlobalLidar& lidar : site.global_lidars) ids.insert(lidar.id);
+  for (const DeviceInfo& device : devices)
+    if (!ids.insert(device.id).second) return fail("{}: two sensors have this id; rename one", device.id);
+  return {};
+}
+
+Result<std::unique_ptr<Recorder>> Recorder::create(wire::Dispatcher& dispatcher, const Site& site,
+                                                   const std::vector<DeviceInfo>& devices,
+                                                   const fs::path& out) {
+  if (const Status fine = check(site, devices, out); !fine) return tl::unexpected(fine.error());
   std::unique_ptr<Recorder> recorder(new Recorder(out));
   if (const Status opened = recorder->open(dispatcher, site, devices); !opened) {
-    fs::remove_all(out, error);  // it was empty
+    std::error_code ignored;
+    fs::remove_all(out, ignored);  // it was empty
     return tl::unexpected(opened.error());
   }
   for (int i = 0; i < kWriters; ++i)
@@ -46,14 +57,13 @@ Recorder::~Recorder() {
 
 Result<Recorder::Sensor*> Recorder::add_sensor(const std::string& id, const fs::path& folder,
                                                const Camera& camera) {
-  const auto [sensor, added] = sensors_.try_emplace(id);
-  if (!added) return fail("{}: two sensors have this id; rename one", id);
-  sensor->second.folder = folder;
-  sensor->second.camera = camera;
+  Sensor& sensor = sensors_[id];
+  sensor.folder = folder;
+  sensor.camera = camera;
   std::error_code error;
   fs::create_directories(folder / "depth", error);
   if (error) return fail("{}: cannot be made ({}); name another folder", folder.string(), error.message());
-  return &sensor->second;
+  return &sensor;
 }
 
 Status Recorder::add_lidar(wire::Dispatcher& dispatcher, const GlobalLidar& lidar) {
@@ -73,10 +83,11 @@ Status Recorder::add_lidar(wire::Dispatcher& dispatcher, const GlobalLidar& lida
 }
 
 Status Recorder::add_device(wire::Dispatcher& dispatcher, const DeviceInfo& device) {
-  const fs::path folder = out_ / "devices" / device.id;
+  const fs::path folder = out_ / "devices" / ("." + device.id);  // readers pass over it
   const auto sensor = add_sensor(device.id, folder, device.camera);
   if (!sensor) return tl::unexpected(sensor.error());
   Sensor& one = **sensor;
+  one.named = out_ / "devices" / device.id;
   if (Status written = write_device(folder / "device.json", device); !written) return written;
   if (Status subscribed =
           wire::subscribe_depth(dispatcher, device.id, device.camera.depth_scale_m,
@@ -111,9 +122,22 @@ void Recorder::take(Sensor& sensor, Result<DepthImage> image) {
   }
 }
 
+Result<fs::path> Recorder::folder_of(Sensor& sensor) {
+  const std::scoped_lock lock(mutex_);
+  if (sensor.named.empty()) return sensor.folder;
+  std::error_code error;
+  fs::rename(sensor.folder, sensor.named, error);
+  if (error)
+    return fail("{}: cannot be made ({}); name another folder", sensor.named.string(), error.message());
+  sensor.folder = std::exchange(sensor.named, {});
+  return sensor.folder;
+}
+
 void Recorder::write_frames(const std::stop_token& stop) {
   while (const auto frame = waiting_.pop(stop)) {
-    const Status written = write_depth(frame->sensor->folder / "depth", frame->image);
+    const Status written = folder_of(*frame->sensor).and_then([&](const fs::path& folder) {
+      return write_depth(folder / "depth", frame->image);
+    });
     const std::scoped_lock lock(mutex_);
     if (written) ++frame->sensor->recorded.frames;
     if (!written && trouble_) trouble_ = written;

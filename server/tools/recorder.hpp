@@ -24,12 +24,15 @@ struct Recorded {
 };
 
 /// Frames wait in a bounded queue for threads that encode and write them; samples are written by the
-/// dispatcher's thread, which must have stopped before this goes. Each file appears whole, so that even a
-/// killed recorder leaves frames that can be read.
+/// dispatcher's thread, which must have stopped before this goes. Each frame appears whole, each sample at
+/// once, and a device with its first frame, so that what a killed recorder leaves can be read.
 class Recorder {
  public:
-  /// Writes the descriptions and subscribes. `out` is a new or an empty folder. Errors: it is not, it cannot be
-  /// written, two sensors have one id.
+  /// Before anything is made. Errors: `out` is neither a new nor an empty folder; two sensors have one id.
+  [[nodiscard]] static Status check(const Site& site, const std::vector<DeviceInfo>& devices,
+                                    const std::filesystem::path& out);
+  /// Writes the descriptions and subscribes. Errors: as of `check`; it cannot be written; the credentials do
+  /// not allow it.
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> create(wire::Dispatcher& dispatcher, const Site& site,
                                                                 const std::vector<DeviceInfo>& devices,
                                                                 const std::filesystem::path& out);
@@ -47,6 +50,7 @@ class Recorder {
  private:
   struct Sensor {
     std::filesystem::path folder;
+    std::filesystem::path named;  ///< of a device: what its folder is called once there is a frame
     Camera camera;
     Recorded recorded;
     ImuTable imu;
@@ -61,6 +65,8 @@ class Recorder {
   Status add_lidar(wire::Dispatcher& dispatcher, const GlobalLidar& lidar);
   Status add_device(wire::Dispatcher& dispatcher, const DeviceInfo& device);
   Result<Sensor*> add_sensor(const std::string& id, const std::filesystem::path& folder, const Camera& camera);
+  /// Where its frame goes; a device's folder gets its name with the first.
+  Result<std::filesystem::path> folder_of(Sensor& sensor);
   void take(Sensor& sensor, Result<DepthImage> image);
   void refuse(Sensor& sensor, const std::string& why);
   void write_frames(const std::stop_token& stop);

@@ -35,21 +35,23 @@ Result<DepthImage> image_of(const Message& message, const Camera& camera) {
   });
 }
 
-Status write_frame(const Message& message, Stream& stream) {
-  const auto image = image_of(message, stream.camera);
-  if (!image) return tl::unexpected(image.error());
-  if (image->width != stream.camera.width || image->height != stream.camera.height)
-    return fail("an image is {}x{}, the intrinsics are for {}x{}; correct one of them", image->width,
-                image->height, stream.camera.width, stream.camera.height);
+/// Error: it cannot be written.
+Status write_frame(const Message& message, Stream& stream, LeftOut& left_out) {
+  const auto image = image_of(message, stream.camera).and_then([&](DepthImage of) -> Result<DepthImage> {
+    if (of.width == stream.camera.width && of.height == stream.camera.height) return of;
+    return fail("is {}x{}, the intrinsics are for {}x{}; correct one of them", of.width, of.height,
+                stream.camera.width, stream.camera.height);
+  });
+  if (!image) return left_out.add(image.error()), Status();
   if (stream.frames > 0 && image->stamp_ns == stream.last_ns) return {};  // the same frame twice
   stream.last_ns = image->stamp_ns;
   ++stream.frames;
   return write_depth(stream.folder, *image);
 }
 
-Status take_sample(std::string_view cdr, std::vector<ImuSample>& samples) {
+Status take_sample(std::string_view cdr, std::vector<ImuSample>& samples, LeftOut& left_out) {
   const auto sample = imu(cdr);
-  if (!sample) return tl::unexpected(sample.error());
+  if (!sample) return left_out.add(sample.error()), Status();
   if (samples.size() >= kMostSamples) return fail("has over {} samples; cut the bag", kMostSamples);
   samples.push_back(sample->value);
   return {};
@@ -98,6 +100,33 @@ class Outline {
   const ConvertOptions& options_;
 };
 
+/// Frames to their folders, samples to memory; what cannot be used to `left_out`.
+Status read_frames(const fs::path& bag, const ConvertOptions& options, Outline& outline,
+                   LeftOutByTopic& left_out) {
+  return read_bag(bag, [&](const Message& message) -> Status {
+    Status done;
+    if (options.stopped && options.stopped()) return fail("{}: stopped by a signal", bag.string());
+    LeftOut unusable;
+    if (const auto stream = outline.streams.find(message.topic); stream != outline.streams.end())
+      done = write_frame(message, stream->second, unusable);
+    else if (const auto imu = outline.samples.find(message.topic); imu != outline.samples.end())
+      done = take_sample(message.cdr, imu->second.all, unusable);
+    if (!done) return fail("{}: {}: {}", bag.string(), message.topic, done.error().message);
+    if (unusable.messages > 0) left_out[std::string(message.topic)].add({unusable.first});
+    return {};
+  });
+}
+
+/// What the survey left out of all that was used of it; frames and samples are counted when they are read.
+LeftOutByTopic left_out_of(const Survey& survey) {
+  LeftOutByTopic left_out;
+  for (const auto& [topic, of] : survey.left_out) {
+    const std::string& type = survey.topics.at(topic).type;
+    if (type == "tf2_msgs/msg/TFMessage" || survey.cameras.contains(topic)) left_out[topic] = of;
+  }
+  return left_out;
+}
+
 Result<Converted> convert(const fs::path& bag, const fs::path& out, const ConvertOptions& options) {
   const auto survey = survey_bag(bag, topics_of(options), options.stopped);
   if (!survey) return tl::unexpected(survey.error());
@@ -105,23 +134,16 @@ Result<Converted> convert(const fs::path& bag, const fs::path& out, const Conver
   if (!description) return tl::unexpected(description.error());
   Outline outline(out, options);
   if (const Status written = outline.write(*description); !written) return tl::unexpected(written.error());
-  const Status read = read_bag(bag, [&](const Message& message) -> Status {
-    Status done;
-    if (options.stopped && options.stopped()) return fail("{}: stopped by a signal", bag.string());
-    if (const auto stream = outline.streams.find(message.topic); stream != outline.streams.end())
-      done = write_frame(message, stream->second);
-    else if (const auto imu = outline.samples.find(message.topic); imu != outline.samples.end())
-      done = take_sample(message.cdr, imu->second.all);
-    if (!done) return fail("{}: {}: {}", bag.string(), message.topic, done.error().message);
-    return {};
-  });
-  if (!read) return tl::unexpected(read.error());
-  Converted converted;
+  Converted converted{{}, left_out_of(*survey)};
+  if (const Status read = read_frames(bag, options, outline, converted.left_out); !read)
+    return tl::unexpected(read.error());
   for (const auto& [topic, stream] : outline.streams) converted.messages[topic] = stream.frames;
   for (auto& [topic, samples] : outline.samples) {
     if (const Status written = write_sorted(samples); !written) return tl::unexpected(written.error());
     converted.messages[topic] = samples.all.size();
   }
+  for (const auto& [topic, count] : converted.messages)
+    if (count == 0) return fail("{}: {}", bag.string(), none_of(topic, converted.left_out));
   return converted;
 }
 

@@ -25,13 +25,25 @@ struct ConvertOptions {
   std::function<bool()> stopped = {};   ///< asked at each message; true ends it as an error
 };
 
+/// Messages that could not be used: of another kind or size than they should be, damaged.
+struct LeftOut {
+  std::size_t messages = 0;
+  std::string first;  ///< why the first could not, without the topic's name
+  void add(const Error& error) {
+    if (messages++ == 0) first = error.message;
+  }
+};
+using LeftOutByTopic = std::map<std::string, LeftOut, std::less<>>;
+
 struct Converted {
   std::map<std::string, std::size_t> messages;  ///< frames and samples per topic that was asked for
+  LeftOutByTopic left_out;
 };
 
 /// Reads the bag twice: first what describes it, then the frames. `out` must be absent or an empty folder; when
-/// anything is wrong it is left as it was. Intrinsics of a topic x/image come from x/camera_info. Errors: one
-/// line that names file, topic and remedy.
+/// anything is wrong it is left as it was. Intrinsics of a topic x/image come from x/camera_info. Messages
+/// that cannot be used are left out and counted. Errors: one line that names file, topic and remedy; also a
+/// topic of which no message can be used.
 [[nodiscard]] Result<Converted> convert_bag(const std::filesystem::path& bag, const std::filesystem::path& out,
                                             const ConvertOptions& options);
 

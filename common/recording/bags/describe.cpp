@@ -19,7 +19,10 @@ Result<TopicSurvey> topic_of(const std::string& bag, const Survey& survey, const
     return std::ranges::find(types, topic.type) != types.end();
   };
   const auto topic = survey.topics.find(name);
-  if (topic != survey.topics.end() && fits(topic->second)) return topic->second;
+  if (topic != survey.topics.end() && fits(topic->second)) {
+    if (topic->second.messages == 0) return fail("{}: {}", bag, none_of(name, survey.left_out));
+    return topic->second;
+  }
   if (topic != survey.topics.end())
     return fail("{}: {} carries {}; give one of {}", bag, name, topic->second.type, fmt::join(types, ", "));
   constexpr std::size_t kMostTold = 20;  // a line stays readable; by hand

@@ -3,21 +3,20 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/camera_info.hpp"
 #include "common/recording/bags/cdr.hpp"
 
 namespace liloc::bags {
 namespace {
 
 constexpr std::int64_t kNsInSecond = 1'000'000'000;
-constexpr std::size_t kLargestSide = 8192;
 constexpr std::uint8_t kFloat32 = 7;  // of sensor_msgs/msg/PointField
 
 tl::unexpected<Error> cut_short() {
   return fail("is no such message, or cut short; record it anew");
 }
 
-template <class T>
-Status header(CdrIn& in, Framed<T>& message) {
+Status header(CdrIn& in, Header& message) {
   const auto seconds = in.number<std::int32_t>();
   const auto nanoseconds = in.number<std::uint32_t>();
   message.frame_id = in.text();
@@ -73,6 +72,13 @@ Result<std::array<std::size_t, 3>> coordinates(CdrIn& in) {
 
 }  // namespace
 
+Result<Header> header_of(std::string_view cdr) {
+  CdrIn in(cdr);
+  Header message;
+  if (const Status read = header(in, message); !read) return tl::unexpected(read.error());
+  return message;
+}
+
 Result<Framed<DepthImage>> depth_image(std::string_view cdr, double depth_scale_m) {
   CdrIn in(cdr);
   Framed<DepthImage> message;
@@ -87,8 +93,9 @@ Result<Framed<DepthImage>> depth_image(std::string_view cdr, double depth_scale_
   if (!metres && encoding != "16UC1" && encoding != "mono16")
     return fail("has the encoding '{}'; depth is 16UC1, mono16 or 32FC1", encoding.substr(0, 40));
   const std::size_t each = metres ? 4 : 2;
-  if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide || step < width * each ||
-      data.size() / step < height)
+  if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide)
+    return fail("is {}x{}; an image has 1 to {} pixels each way", width, height, kLargestSide);
+  if (step < width * each || data.size() / step < height)
     return fail("is {}x{} in steps of {} with {} bytes; they do not go together", width, height, step,
                 data.size());
   DepthImage& image = message.value;
@@ -107,15 +114,19 @@ Result<Framed<Camera>> camera_info(std::string_view cdr) {
   CdrIn in(cdr);
   Framed<Camera> message;
   if (const Status read = header(in, message); !read) return tl::unexpected(read.error());
-  const auto height = in.number<std::uint32_t>(), width = in.number<std::uint32_t>();
+  CameraInfo info;
+  info.height = in.number<std::uint32_t>();
+  info.width = in.number<std::uint32_t>();
   (void)in.text();                                                                    // distortion model
   for (std::size_t left = in.length(8); left > 0; --left) (void)in.number<double>();  // its coefficients
-  const auto k = in.doubles<9>();
+  info.k = in.doubles<9>();
+  (void)in.doubles<9>();  // r
+  info.p = in.doubles<12>();
+  for (std::uint32_t* value : {&info.binning_x, &info.binning_y, &info.roi.x_offset, &info.roi.y_offset,
+                               &info.roi.height, &info.roi.width})
+    *value = in.number<std::uint32_t>();
   if (!in.good()) return cut_short();
-  const auto side = [](std::uint32_t value) {
-    return static_cast<int>(std::min<std::uint32_t>(value, 1'000'000));
-  };
-  const auto camera = Camera{side(width), side(height), k[0], k[4], k[2], k[5], 0.001}.validated("camera_info");
+  const auto camera = liloc::camera_of(info);
   if (!camera) return tl::unexpected(camera.error());
   message.value = *camera;
   return message;

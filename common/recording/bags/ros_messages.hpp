@@ -10,10 +10,12 @@
 
 namespace liloc::bags {
 
-template <class T>
-struct Framed {
+struct Header {
   StampNs stamp_ns = 0;
   std::string frame_id;
+};
+template <class T>
+struct Framed : Header {
   T value;
 };
 struct Transform {
@@ -21,9 +23,11 @@ struct Transform {
   Pose T_parent_child = Pose::Identity();
 };
 
+/// Of any message that begins with one.
+[[nodiscard]] Result<Header> header_of(std::string_view cdr);
 /// sensor_msgs/msg/Image: 16UC1 and mono16 as they are, 32FC1 (metres) in units of `depth_scale_m`.
 [[nodiscard]] Result<Framed<DepthImage>> depth_image(std::string_view cdr, double depth_scale_m);
-/// sensor_msgs/msg/CameraInfo: K; the image is taken for rectified, its depth for millimetres, as ROS has it.
+/// sensor_msgs/msg/CameraInfo, as `liloc::camera_of` has it; depth is taken for millimetres, as in ROS.
 [[nodiscard]] Result<Framed<Camera>> camera_info(std::string_view cdr);
 /// sensor_msgs/msg/Imu.
 [[nodiscard]] Result<Framed<ImuSample>> imu(std::string_view cdr);

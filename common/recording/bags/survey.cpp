@@ -2,25 +2,20 @@
 
 #include <algorithm>
 
-#include "common/recording/bags/cdr.hpp"
+#include "common/recording/bags/limits.hpp"
 
 namespace liloc::bags {
 namespace {
 
-/// Of any message that begins with a header.
 Status note_header(std::string_view cdr, TopicSurvey* topic) {
-  CdrIn in(cdr);
-  const auto seconds = in.number<std::int32_t>();
-  const auto nanoseconds = in.number<std::uint32_t>();
-  std::string frame_id = in.text();
-  if (!in.good()) return fail("is cut short; record it anew");
-  const StampNs stamp_ns = seconds * StampNs{1'000'000'000} + nanoseconds;
-  if (topic->messages == 1) {
-    topic->frame_id = std::move(frame_id);
-    topic->first_ns = topic->last_ns = stamp_ns;
+  auto header = header_of(cdr);
+  if (!header) return tl::unexpected(header.error());
+  if (topic->messages++ == 0) {
+    topic->frame_id = std::move(header->frame_id);
+    topic->first_ns = topic->last_ns = header->stamp_ns;
   }
-  topic->first_ns = std::min(topic->first_ns, stamp_ns);
-  topic->last_ns = std::max(topic->last_ns, stamp_ns);
+  topic->first_ns = std::min(topic->first_ns, header->stamp_ns);
+  topic->last_ns = std::max(topic->last_ns, header->stamp_ns);
   return {};
 }
 
@@ -65,24 +60,30 @@ Result<Survey> survey_bag(const std::filesystem::path& bag, const std::vector<st
       known =
           survey.topics.emplace(std::string(message.topic), TopicSurvey{std::string(message.type), "", 0, 0, 0})
               .first;
-    ++known->second.messages;
     Status noted;
     if (message.type == "tf2_msgs/msg/TFMessage") noted = note_transforms(message.cdr, &survey.frames);
-    if (std::ranges::find(cameras, message.topic) != cameras.end() &&
-        message.type == "sensor_msgs/msg/CameraInfo")
+    if (std::ranges::find(cameras, message.topic) != cameras.end() && message.type == kCameraInfo)
       noted = note_camera(message, &survey);
     if (std::ranges::find(wanted, message.topic) != wanted.end() && has_header(message.type))
       noted = note_header(message.cdr, &known->second);
-    if (!noted) return fail("{}: {}: {}", bag.string(), message.topic, noted.error().message);
+    if (!noted) survey.left_out[known->first].add(noted.error());
     return {};
   };
   if (const Status read = read_bag(bag, note); !read) return tl::unexpected(read.error());
   return survey;
 }
 
+std::string none_of(const std::string& topic, const LeftOutByTopic& left_out) {
+  const auto why = left_out.find(topic);
+  return topic + ": none of its messages can be used" +
+         (why == left_out.end() ? "; record it anew" : "; the first " + why->second.first);
+}
+
 Result<Camera> camera_of(const Survey& survey, const std::string& topic) {
   const std::string info = topic.substr(0, topic.rfind('/') + 1) + "camera_info";
   const auto camera = survey.cameras.find(info);
+  if (camera == survey.cameras.end() && survey.left_out.contains(info))
+    return fail("{}", none_of(info, survey.left_out));
   if (camera == survey.cameras.end())
     return fail("{}: its intrinsics are missing: the bag has no {}; record it too", topic, info);
   return camera->second;

@@ -5,17 +5,18 @@
 #include <vector>
 
 #include "common/recording/bags/bag.hpp"
+#include "common/recording/bags/convert.hpp"
 #include "common/recording/bags/frames.hpp"
 #include "common/recording/bags/ros_messages.hpp"
 
 namespace liloc::bags {
 
 constexpr std::string_view kImage = "sensor_msgs/msg/Image", kPoints = "sensor_msgs/msg/PointCloud2",
-                           kImu = "sensor_msgs/msg/Imu";
+                           kImu = "sensor_msgs/msg/Imu", kCameraInfo = "sensor_msgs/msg/CameraInfo";
 
 struct TopicSurvey {
   std::string type, frame_id;
-  std::size_t messages = 0;
+  std::size_t messages = 0;  ///< with a header that can be read; of those in `wanted`
   StampNs first_ns = 0, last_ns = 0;
 
   /// Messages a second, 0.1 to 1000.
@@ -25,7 +26,11 @@ struct Survey {
   std::map<std::string, TopicSurvey, std::less<>> topics;  ///< by name, all of the bag
   std::map<std::string, Camera, std::less<>> cameras;      ///< by topic of the CameraInfo
   Frames frames;
+  LeftOutByTopic left_out;  ///< of all that is read here
 };
+
+/// "TOPIC: none of its messages can be used; the first ...", where one was tried.
+[[nodiscard]] std::string none_of(const std::string& topic, const LeftOutByTopic& left_out);
 
 /// Reads the whole bag. Frames' stamps are those of the topics in `wanted`. Error: also when `stopped`, asked
 /// at each message, says so.

@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "common/recording/imu_table.hpp"
 #include "common/recording/tests/temporary_folder.hpp"
 #include "common/recording/writer.hpp"
 
@@ -107,6 +108,19 @@ TEST(RoundTrip, ImuAndTumKeepNanoseconds) {
     EXPECT_NEAR(((*imu)[i].specific_force_m_s2 - samples[i].specific_force_m_s2).norm(), 0, 2e-9);
     EXPECT_EQ((*tum)[i].stamp_ns, poses[i].stamp_ns);
     EXPECT_LT(angle_between_rad((*tum)[i].T_map_sensor, poses[i].T_map_sensor), 1e-8);
+  }
+}
+
+TEST(ImuTable, EachRowCanBeReadBeforeTheTableIsClosed) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "imu.csv";
+  ImuTable table;
+  ASSERT_TRUE(table.open(file));
+  for (StampNs i = 0; i < 300; ++i) {  // more than a stream's buffer holds
+    table.add({kStart + i * 5'000'000, {0.1, 0.2, 0.3}, {0, 0, 9.81}});
+    const auto imu = read_imu(file);
+    ASSERT_TRUE(imu) << imu.error().message;
+    ASSERT_EQ(imu->size(), static_cast<std::size_t>(i) + 1) << "a killed recorder leaves what it had";
   }
 }
 

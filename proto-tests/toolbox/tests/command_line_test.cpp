@@ -11,10 +11,9 @@
 #include <thread>
 
 #include "common/recording/files.hpp"
-#include "common/testing/program.hpp"
 #include "common/wire/status.hpp"
 #include "proto-tests/replay/tests/small_recording.hpp"
-#include "proto-tests/replay/tests/temp_folder.hpp"
+#include "proto-tests/toolbox/tests/program_test.hpp"
 
 namespace liloc::toolbox {
 namespace {
@@ -22,22 +21,7 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-Outcome liloc(const std::string& arguments) {
-  return run_program(LILOC_PROGRAM, arguments);
-}
-
-void expect_complaint(const Outcome& outcome, int exit_code, const std::string& part) {
-  EXPECT_EQ(outcome.exit_code, exit_code) << outcome.out;
-  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
-  EXPECT_THAT(outcome.out, testing::StartsWith("liloc: "));
-  EXPECT_THAT(outcome.out, HasSubstr(part));
-}
-
-class CommandLine : public testing::Test {
- protected:
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  replay::TempFolder folder_;
-};
+using CommandLine = ProgramTest;
 
 TEST_F(CommandLine, EverySubcommandHasHelp) {
   for (const char* name : {"", "demo ", "load ", "replay ", "sim ", "align ", "calibrate ", "convert ",

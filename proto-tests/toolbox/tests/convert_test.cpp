@@ -1,11 +1,8 @@
 // liloc convert, and liloc replay of a bag, as a user runs them.
-#include <gmock/gmock.h>
-
 #include "common/recording/bags/tests/written.hpp"
 #include "common/recording/files.hpp"
 #include "common/recording/writer.hpp"
-#include "common/testing/program.hpp"
-#include "proto-tests/replay/tests/temp_folder.hpp"
+#include "proto-tests/toolbox/tests/program_test.hpp"
 
 namespace liloc::toolbox {
 namespace {
@@ -14,18 +11,13 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 namespace written = bags::written;
 
-class Convert : public testing::Test {
+class Convert : public ProgramTest {
  protected:
   Convert() {
     EXPECT_EQ(
         liloc("sim " + path("rec") + " --lidars 1 --seconds 2 --image-width 160 --image-height 120").exit_code,
         0);
   }
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  [[nodiscard]] static Outcome liloc(const std::string& arguments) {
-    return run_program(LILOC_PROGRAM, arguments);
-  }
-
   /// The recording as a bag.
   [[nodiscard]] std::string bag() const {
     const auto recording = open_recording(path("rec"));
@@ -58,7 +50,6 @@ class Convert : public testing::Test {
            path("rec/site.json") + " --device-file device0=" + path("rec/devices/device0/device.json") +
            " --truth device0=" + path("rec/devices/device0/groundtruth.tum");
   }
-  replay::TempFolder folder_;
 };
 
 TEST_F(Convert, ABagBecomesTheRecordingItWasMadeOf) {
@@ -107,11 +98,7 @@ TEST_F(Convert, TumThereAndBack) {
 
 TEST_F(Convert, BadUsageIsOneLineAndLeavesNothing) {
   const auto wrong = [&](const std::string& arguments, const std::string& part) {
-    const Outcome outcome = liloc("convert " + arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
-    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 1) << outcome.out;
-    EXPECT_THAT(outcome.out, HasSubstr(part));
-    EXPECT_FALSE(fs::exists(path("new")));
+    expect_refused("convert " + arguments, part, "new");
   };
   wrong(path("rec"), "OUT");
   wrong(path("rec") + " " + path("new"), "holds no .mcap or .db3");

@@ -55,6 +55,28 @@ TEST_F(LockedSite, DoctorHearsTheServerWithCredentialsAndNothingWithout) {
   EXPECT_THAT(doctor("--seconds 2"), HasSubstr("FAIL  no server is heard"));
 }
 
+TEST_F(LockedSite, ARecorderHearsWithCredentialsAndNothingWithout) {
+  const auto site = start(
+      {LILOC_PROGRAM, "sim", "--live", "--domain", kDomain, "--lidars", "1", "--image-width", "80",
+       "--image-height", "60", "--seconds", "20", "--describe", file("sim"), "--credentials", party("edge")},
+      "sim.log");
+  for (int i = 0; i < 1000 && !fs::exists(file("sim/device0.json")); ++i) std::this_thread::sleep_for(10ms);
+  const auto record = [&](const std::string& out, const std::string& more) {
+    return run_program(LILOC_PROGRAM, "record " + file(out) + " --domain " + kDomain + " --site " +
+                                          file("sim/site.json") + " --device " + file("sim/device0.json") +
+                                          more);
+  };
+  const Outcome closed = record("closed", " --seconds 1");
+  EXPECT_EQ(closed.exit_code, 1) << closed.out;
+  EXPECT_THAT(closed.out, HasSubstr("no ceiling LiDAR was heard"));
+  const Outcome heard = record("heard", " --seconds 6 --credentials " + party("edge"));
+  EXPECT_EQ(heard.exit_code, 0) << heard.out;
+  EXPECT_THAT(heard.out, AllOf(Not(HasSubstr("ceiling0: 0 frames")), Not(HasSubstr("device0: 0 frames"))));
+  const Outcome wrong = record("wrong", " --credentials " + file("absent"));
+  EXPECT_EQ(wrong.exit_code, 1) << wrong.out;
+  EXPECT_THAT(wrong.out, HasSubstr("absent"));
+}
+
 TEST_F(LockedSite, ADevicesDaemonIsServed) {
   const auto server = start_server();
   std::ofstream(file("client.toml")) << "id = \"robotA\"\ndevice = \"" << file("robotA.json")

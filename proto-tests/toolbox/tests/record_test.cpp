@@ -1,12 +1,11 @@
 // liloc record against a simulated site that streams, as a user runs both.
-#include <gmock/gmock.h>
+#include <fmt/format.h>
 
 #include <chrono>
 #include <thread>
 
 #include "common/recording/writer.hpp"
-#include "common/testing/program.hpp"
-#include "proto-tests/replay/tests/temp_folder.hpp"
+#include "proto-tests/toolbox/tests/program_test.hpp"
 
 namespace liloc::toolbox {
 namespace {
@@ -14,33 +13,34 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-class Record : public testing::Test {
+class Record : public ProgramTest {
  protected:
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  [[nodiscard]] static Outcome liloc(const std::string& arguments) {
-    return run_program(LILOC_PROGRAM, arguments);
-  }
   /// Streams two LiDARs and a device until it goes; its files lie in site/.
-  [[nodiscard]] std::jthread streaming() const {
-    std::jthread site([this] {
+  [[nodiscard]] std::jthread streaming(int seconds) const {
+    std::jthread site([this, seconds] {
       const Outcome outcome = liloc(
-          "sim --live --domain 151 --seconds 12 --lidars 2 --image-width 160 --image-height 120 "
-          "--describe " +
-          path("site"));
+          fmt::format("sim --live --domain 151 --seconds {} --lidars 2 --image-width 160 --image-height 120 "
+                      "--describe {}",
+                      seconds, path("site")));
       EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
     });
     for (int i = 0; i < 1000 && !fs::exists(path("site/device0.json")); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     return site;
   }
-  replay::TempFolder folder_;
+  /// Records until a signal that comes after so many seconds.
+  [[nodiscard]] Outcome record_until(const std::string& signal, int seconds,
+                                     const std::string& more = "") const {
+    return run_program("timeout", fmt::format("--preserve-status -s {} {} " LILOC_PROGRAM
+                                              " record {} --site {} --device {} --domain 151{}",
+                                              signal, seconds, path("rec"), path("site/site.json"),
+                                              path("site/device0.json"), more));
+  }
 };
 
 TEST_F(Record, AnInterruptLeavesAWholeRecording) {
-  const std::jthread site = streaming();
-  const Outcome outcome = run_program(
-      "timeout", "--preserve-status -s INT 4 " LILOC_PROGRAM " record " + path("rec") + " --site " +
-                     path("site/site.json") + " --device " + path("site/device0.json") + " --domain 151");
+  const std::jthread site = streaming(12);
+  const Outcome outcome = record_until("INT", 4);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   EXPECT_THAT(outcome.out, HasSubstr("device0: "));
   const auto recording = open_recording(path("rec"));
@@ -53,6 +53,19 @@ TEST_F(Record, AnInterruptLeavesAWholeRecording) {
   ASSERT_EQ(recording->devices.size(), 1U);
   EXPECT_GE(recording->devices[0].depth.size(), 10U) << "15 a second";
   EXPECT_GE(recording->devices[0].imu.size(), 100U) << "200 a second";
+}
+
+TEST_F(Record, AKillLeavesWhatHadComeUntilThen) {
+  const std::jthread site = streaming(6);
+  ASSERT_TRUE(write_device(path("silent.json"), {"silent", {80, 60, 60, 60, 39.5, 29.5}, 15, 0, {}, {}}));
+  const Outcome outcome = record_until("KILL", 4, " --device " + path("silent.json"));
+  EXPECT_NE(outcome.exit_code, 0);
+  const auto recording = open_recording(path("rec"));
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->devices.size(), 1U) << "one was never heard";
+  const DeviceRecording& device = recording->devices[0];
+  ASSERT_FALSE(device.imu.empty());
+  EXPECT_LT(std::abs(device.imu.back().stamp_ns - device.depth.back().stamp_ns), from_ms(1000));
 }
 
 TEST_F(Record, SilenceIsToldAndADeviceWithoutFramesIsLeftOut) {
@@ -73,11 +86,7 @@ TEST_F(Record, BadUsageIsOneLineAndLeavesNothing) {
   ASSERT_TRUE(write_site(path("site.json"), {"map", {{"ceiling0", camera, 6, Pose::Identity()}}}));
   ASSERT_TRUE(write_device(path("twin.json"), {"ceiling0", camera, 15, 0, {}, {}}));
   const auto wrong = [&](const std::string& arguments, const std::string& part) {
-    const Outcome outcome = liloc("record " + arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
-    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 1) << outcome.out;
-    EXPECT_THAT(outcome.out, HasSubstr(part));
-    EXPECT_FALSE(fs::exists(path("rec")));
+    expect_refused("record " + arguments, part, "rec");
   };
   wrong(path("rec"), "--site");
   wrong(path("rec") + " --site " + path("absent.json"), "no such file");

@@ -47,6 +47,21 @@ TEST(AnswerStore, KeepsTheNewestAndWhatIsNotItsOwn) {
   EXPECT_EQ(read->answered.request.seq, 3U);
 }
 
+TEST(AnswerStore, TheOldestIsWhatWasWrittenFirstWhateverItsStampSays) {
+  const TemporaryFolder folder;
+  const auto store = AnswerStore::open({folder.path(), Which::all, 2});
+  ASSERT_TRUE(store);
+  const Walked walked(3, 3);
+  for (std::size_t i = 3; i-- > 0;) {  // the newest stamp first, as of a device whose clock runs ahead
+    ASSERT_TRUE(store->save(walked.answers[i]));
+    for (const std::string& name : names_in(folder.path()))
+      fs::last_write_time(folder.path() / name,
+                          fs::last_write_time(folder.path() / name) - std::chrono::hours(1));
+  }
+  EXPECT_THAT(names_in(folder.path()),
+              ElementsAre("01700000000000000000-robot-1.answer", "01700000000800000000-robot-2.answer"));
+}
+
 TEST(AnswerStore, StaysBelowItsBytes) {
   const TemporaryFolder folder;
   const Walked walked(3, 3);

@@ -223,6 +223,54 @@ TEST(BagFiles, FilesTellWhatTheBagDoesNot) {
   EXPECT_EQ(read_depth(device.depth[0], camera)->at(0, 0), 3000) << "1.5 m";
 }
 
+/// A LiDAR with a good image and what else is asked for; its intrinsics and place come from the bag.
+std::string records_with(const std::string& more, bool good = true) {
+  const std::string info = written::camera_info(8, 4, {8, 0, 3.5, 0, 8, 1.5, 0, 0, 1});
+  const std::string image = written::image("16UC1", 8, 4, std::string(64, '\1'), kStart_ns);
+  written::Cdr tf;
+  tf.put(std::uint32_t{1}).header("map").text("camera");
+  for (const double v : {0.0, 0.0, 3.0, 1.0, 0.0, 0.0, 0.0}) tf.put(v);
+  return written::channel("/l/image", "sensor_msgs/msg/Image", 1) +
+         written::channel("/l/camera_info", "sensor_msgs/msg/CameraInfo", 2) +
+         written::channel("/tf", "tf2_msgs/msg/TFMessage", 3) + more +
+         (good ? written::message(info, 2) + written::message(tf.done(), 3) + written::message(image, 1) : "");
+}
+
+TEST_F(Trouble, MessagesThatCannotBeUsedAreCountedByTopicAndLeftOut) {
+  const std::string spoiled = written::message("?", 1) + written::message("?", 2) + written::message("?", 3) +
+                              written::message(written::image("rgb8", 2, 1, "abcd"), 1) +
+                              written::message(written::image("16UC1", 2, 1, "abcd"), 1);
+  ConvertOptions options;
+  options.lidars = {{"ceiling0", "/l/image"}};
+  const fs::path bag = folder_.put("bag.mcap", written::mcap(records_with(spoiled)));
+  const auto converted = convert_bag(bag, folder_.path() / "good", options);
+  ASSERT_TRUE(converted) << converted.error().message;
+  EXPECT_EQ(converted->messages.at("/l/image"), 1U);
+  EXPECT_EQ(converted->left_out.at("/l/image").messages, 3U);
+  EXPECT_THAT(converted->left_out.at("/l/image").first, HasSubstr("cut short"));
+  EXPECT_EQ(converted->left_out.at("/l/camera_info").messages, 1U);
+  EXPECT_EQ(converted->left_out.at("/tf").messages, 1U);
+  EXPECT_TRUE(open_recording(folder_.path() / "good"));
+}
+
+TEST_F(Trouble, WhereNoMessageCanBeUsedTheFirstSaysWhy) {
+  ConvertOptions options;
+  options.lidars = {{"ceiling0", "/l/image"}};
+  const auto said = [&](const std::string& records) {
+    return message(folder_.put("bag.mcap", written::mcap(records)), options);
+  };
+  EXPECT_THAT(said(records_with(written::message("?", 1), false)),
+              HasSubstr("/l/image: none of its messages can be used; the first is no such message"));
+  const std::string image = written::message(written::image("16UC1", 8, 4, std::string(64, '\1')), 1);
+  EXPECT_THAT(said(records_with(image + written::message("?", 2), false)),
+              HasSubstr("/l/camera_info: none of its messages can be used; the first is no such message"));
+  const std::string small = written::message(written::image("16UC1", 2, 1, "abcd"), 4);
+  options.lidars = {{"ceiling0", "/l/small"}};
+  EXPECT_THAT(
+      said(written::channel("/l/small", "sensor_msgs/msg/Image", 4) + records_with(small + small)),
+      HasSubstr("/l/small: none of its messages can be used; the first is 2x1, the intrinsics are for 8x4"));
+}
+
 TEST_F(Trouble, WhatStandsInTheWayIsLeftAlone) {
   folder_.put("rec2/thesis.txt", "years of work");
   const auto converted =

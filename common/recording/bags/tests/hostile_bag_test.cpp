@@ -110,7 +110,12 @@ TEST(HostileMessage, ImagesWhoseSizesDoNotGoTogether) {
   EXPECT_THAT(depth_image(written::image("16UC1", 2, 2, "abcd"), 0.001).error().message,
               HasSubstr("go together"));
   EXPECT_THAT(depth_image(written::image("16UC1", kHuge, kHuge, "abcd"), 0.001).error().message,
-              HasSubstr("go together"));
+              HasSubstr("is 4000000000x4000000000; an image has 1 to 8192"));
+  EXPECT_THAT(depth_image(written::image("32FC1", 60'000, 60'000, "abcd"), 0.001).error().message,
+              HasSubstr("is 60000x60000; an image has 1 to 8192"));
+  EXPECT_THAT(depth_image(written::image("16UC1", 8192, 8192, "abcd"), 0.001).error().message,
+              HasSubstr("go together"))
+      << "before room is made for it";
   EXPECT_THAT(depth_image(written::image("rgb8", 1, 1, "abc"), 0.001).error().message, HasSubstr("'rgb8'"));
   EXPECT_FALSE(depth_image("", 0.001));
 }

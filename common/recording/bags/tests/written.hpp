@@ -95,6 +95,23 @@ inline std::string image(std::string_view encoding, std::uint32_t width, std::ui
       .done();
 }
 
+/// A CameraInfo; p, binning and roi (x_offset, y_offset, height, width) may stay as drivers leave them.
+inline std::string camera_info(std::uint32_t width, std::uint32_t height, const std::array<double, 9>& k,
+                               const std::array<double, 12>& p = {}, std::uint32_t binning = 0,
+                               const std::array<std::uint32_t, 4>& roi = {}) {
+  Cdr out;
+  out.header("camera").put(height).put(width).text("plumb_bob").put(std::uint32_t{0});
+  const auto put = [&](const auto& values) {
+    for (const auto value : values) out.put(value);
+  };
+  put(k);
+  put(std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+  put(p);
+  out.put(binning).put(binning);
+  put(roi);
+  return out.put(std::uint8_t{0}).done();
+}
+
 /// An Imu of angular velocity and specific force.
 inline std::string imu(const std::array<double, 3>& w, const std::array<double, 3>& a,
                        std::int64_t stamp_ns = 0) {

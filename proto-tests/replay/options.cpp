@@ -45,6 +45,8 @@ Result<ReplayOptions> ReplayOptions::validated() const {
       return fail(
           "--save-answers: the server cannot know which answers are wrong; add --lockstep, or give DIR:all");
   }
+  if (lockstep && clock_ahead_ms != 0)
+    return fail("--clock-ahead-ms: does nothing with --lockstep; leave one out");
   if (out.empty()) return fail("--out: missing; name the folder for the results");
   return *this;
 }

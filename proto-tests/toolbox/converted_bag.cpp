@@ -22,7 +22,7 @@ ConvertedBag::~ConvertedBag() {
 Status ConvertedBag::take(replay::ReplayOptions& options, BagArguments bag) {
   const std::string given = options.recording.string();
   if (!bags::is_bag(options.recording)) {
-    if (!bag.any()) return {};
+    if (!bag.any() && !bag.still_seconds) return {};
     return fail("{}: is no bag; leave out the options of bags", given);
   }
   bag.devices = std::exchange(options.devices, {});

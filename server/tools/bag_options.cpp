@@ -28,8 +28,10 @@ Result<bags::ConvertOptions> BagArguments::options() const {
         take("--imu", imus, options.imus), take("--truth", truths, options.truths),
         take("--device-file", device_files, options.device_files)})
     if (!taken) return tl::unexpected(taken.error());
+  if (!site.empty() && !world.empty()) return fail("--world: the file of --site names it; leave one out");
+  if (still_seconds && devices.empty()) return fail("--still-seconds: there is no --device; give both");
   options.site_file = site;
-  options.world_frame = world;
+  if (!world.empty()) options.world_frame = world;
   options.still_seconds = still_seconds;
   return options;
 }
@@ -58,7 +60,7 @@ void add_bag_options(CLI::App& command, BagArguments& arguments) {
       "--site", arguments.site,
       "site.json with the LiDARs' intrinsics, depth scale and extrinsics; else from camera_info and "
       "tf of the bag, in millimetres");
-  bag->add_option("--world", arguments.world, "The map's frame in tf")->capture_default_str();
+  bag->add_option("--world", arguments.world, "The map's frame in tf; else map");
   bag->add_option("--still-seconds", arguments.still_seconds,
                   "The devices stand still for so long at the start; else as --device-file says, or 0")
       ->check(command::in_range(0.0, 60.0));

@@ -11,13 +11,15 @@ namespace liloc::toolbox {
 
 struct BagArguments {
   std::vector<std::string> lidars, devices, imus, truths, device_files;  ///< each ID=VALUE
-  std::string site, world = "map";
+  std::string site, world;
   std::optional<double> still_seconds;
 
+  /// Any but --device and --still-seconds, which are not of bags alone.
   [[nodiscard]] bool any() const {
-    return !lidars.empty() || !imus.empty() || !truths.empty() || !device_files.empty() || !site.empty();
+    return !lidars.empty() || !imus.empty() || !truths.empty() || !device_files.empty() || !site.empty() ||
+           !world.empty();
   }
-  /// Errors: not ID=VALUE, an id twice.
+  /// Errors: not ID=VALUE, an id twice, an option that would do nothing.
   [[nodiscard]] Result<bags::ConvertOptions> options() const;
 };
 

@@ -22,6 +22,7 @@ struct ConvertArguments {
 using Stopped = std::function<bool()>;
 
 Status convert_bag(const ConvertArguments& arguments, const Stopped& stopped) {
+  if (!arguments.camera.empty()) return fail("--camera: is of a TUM sequence; of a bag give --device-file");
   auto options = arguments.bag.options();
   if (!options) return tl::unexpected(options.error());
   options->stopped = stopped;
@@ -64,6 +65,9 @@ Status convert_tum(const ConvertArguments& arguments, const Stopped& stopped) {
 }
 
 Status convert_to_tum(const ConvertArguments& arguments, const Stopped& stopped) {
+  const BagArguments& bag = arguments.bag;
+  if (bag.any() || !bag.devices.empty() || bag.still_seconds || !arguments.camera.empty())
+    return fail("--to tum: takes all devices of a recording as they are; leave out the other options");
   const auto recording = open_recording(arguments.in);
   if (!recording) return tl::unexpected(recording.error());
   if (recording->devices.empty()) return fail("{}: has no device, which TUM sequences are of", arguments.in);

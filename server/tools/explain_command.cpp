@@ -21,6 +21,9 @@ int run(const ExplainArguments& arguments) {
   const std::filesystem::path svg = arguments.svg.empty()
                                         ? std::filesystem::path(arguments.file).replace_extension(".svg")
                                         : std::filesystem::path(arguments.svg);
+  if (std::error_code absent; std::filesystem::equivalent(svg, arguments.file, absent))
+    return complain({fmt::format("--svg: {} is the answer itself; name another file", svg.string())},
+                    kBadUsage);
   const answers::Explanation explanation = answers::explain(*saved);
   const SpotReply& reply = saved->answered.reply;
   const std::string title =

@@ -106,6 +106,15 @@ TEST_F(Convert, BadUsageIsOneLineAndLeavesNothing) {
   wrong(bag() + " " + path("new") + " --lidar ceiling0=/ceiling0/depth/image", "camera_info");
   wrong(bag() + " " + path("rec") + topics(), "is there already");
   wrong(bag() + " " + path("new") + " --to euroc", "--to");
+  const std::string sensors = bag() + " " + path("new") + " --lidar ceiling0=/ceiling0/depth/image";
+  wrong(sensors + " --site " + path("rec/site.json") + " --world hall", "--world: the file of --site names it");
+  wrong(sensors + " --still-seconds 2", "--still-seconds: there is no --device");
+  wrong(sensors + " --camera 80,60,60,60,39.5,29.5", "--camera: is of a TUM sequence");
+  wrong(path("rec") + " " + path("new") + " --to tum --device device0", "--to tum: takes all devices");
+  for (const char* of_bags : {" --world hall", " --still-seconds 2"})
+    expect_refused("replay " + path("rec") + " --lockstep --out " + path("new") + of_bags, "is no bag", "new");
+  expect_refused("replay " + path("rec") + " --lockstep --clock-ahead-ms 50 --out " + path("new"),
+                 "--clock-ahead-ms: does nothing with --lockstep", "new");
   ASSERT_TRUE(write_file(path("seq/depth.txt"), "1 depth/absent.png\n"));
   wrong(path("seq") + " " + path("new"), "give --device ID and --camera");
   wrong(path("seq") + " " + path("new") + " --device a", "--camera: missing");

@@ -1,9 +1,10 @@
+#include "common/recording/writer.hpp"
+
 #include <gmock/gmock.h>
 
 #include <random>
 
 #include "common/recording/tests/temporary_folder.hpp"
-#include "common/recording/writer.hpp"
 
 namespace liloc {
 namespace {

@@ -17,7 +17,7 @@ std::string_view next_cell(std::string_view& line) {
 bool parse_seconds(std::string_view cell, StampNs& stamp_ns) {
   const std::size_t dot = cell.find('.');
   std::int64_t seconds = 0, fraction_ns = 0;
-  if (!parse(cell.substr(0, dot), seconds) || seconds < 0 ||
+  if (cell.starts_with('-') || !parse(cell.substr(0, dot), seconds) ||
       seconds > std::numeric_limits<std::int64_t>::max() / kNsInSecond - 1)
     return false;
   if (dot != std::string_view::npos && dot + 1 < cell.size()) {

@@ -301,12 +301,5 @@ TEST(Engine, TwoRunsAreEqual) {
   }
 }
 
-TEST(LocalMethodNames, AreTheCommandLines) {
-  EXPECT_EQ(*local_method_from("cloud"), LocalMethod::cloud);
-  EXPECT_EQ(*local_method_from("inertial"), LocalMethod::inertial);
-  EXPECT_EQ(*local_method_from("dead-reckoning"), LocalMethod::dead_reckoning);
-  EXPECT_FALSE(local_method_from("magic"));
-}
-
 }  // namespace
 }  // namespace liloc

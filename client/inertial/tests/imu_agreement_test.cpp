@@ -1,76 +1,118 @@
+// One record of what was seen and felt, and what each comparison says of it when the IMU is wrong in one way.
 #include "client/inertial/imu_agreement.hpp"
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
+#include "common/testing/box_room.hpp"
+
 namespace liloc {
 namespace {
 
-constexpr double kRate_rad_s = 0.5;  // 0.05 rad over the shortest step here: enough to be compared
+using Eigen::Vector3d;
 
-/// An IMU that turns for the first steps and then stands; registration sees `seen_factor` of it.
-class Turning {
- public:
-  Turning(StampNs step_ns, double seen_factor) : step_ns_(step_ns), seen_factor_(seen_factor) {}
-  Turning& turn(int steps) { return go(steps, kRate_rad_s); }
-  Turning& stand(int steps) { return go(steps, 0); }
-  [[nodiscard]] const MotionRecord& record() const { return record_; }
+constexpr StampNs kStart_ns = 1'700'000'000'000'000'000;
+constexpr double kFrameHz = 15;
 
- private:
-  Turning& go(int steps, double rate_rad_s) {
-    for (int i = 0; i < steps; ++i, now_ns_ += step_ns_) {
-      const StampNs end_ns = now_ns_ + step_ns_;
-      for (; felt_ns_ <= end_ns + from_ms(10); felt_ns_ += from_ms(10)) feel(rate_rad_s);  // past its end
-      SeenStep step{now_ns_, end_ns};
-      step.rate_rad_s = {0, 0, seen_factor_ * rate_rad_s};
-      record_.see(step);
-    }
-    return *this;
+Pose looking_about(double t) {
+  return scene::looking({3 + 0.9 * std::sin(0.7 * t), 2.5 + 0.7 * std::sin(0.9 * t), 1.2},
+                        0.6 * std::sin(1.1 * t) + 0.25 * std::sin(2.3 * t), 0.2 + 0.15 * std::sin(1.7 * t));
+}
+Pose standing(double) {
+  return scene::looking({3, 2.5, 1.2}, 0.3, 0.2);
+}
+
+/// Ten seconds; the IMU sits at the sensor.
+MotionRecord played(const std::function<Pose(double)>& path,
+                    const std::function<void(ImuSample&)>& spoil = {}) {
+  MotionRecord record;
+  for (ImuSample sample : scene::imu_along(path, Pose::Identity(), 0, 13, 200, kStart_ns)) {
+    if (spoil) spoil(sample);
+    record.feel(sample);
   }
-  void feel(double rate_rad_s) {
-    ImuSample sample;
-    sample.stamp_ns = felt_ns_;
-    sample.angular_velocity_rad_s = {0, 0, rate_rad_s};
-    record_.feel(sample);
+  for (int i = 0; i < 150; ++i) {
+    const double from_s = 1 + i / kFrameHz, to_s = 1 + (i + 1) / kFrameHz;
+    const Pose from = path(from_s), to = path(to_s);
+    record.see({kStart_ns + from_seconds(from_s), kStart_ns + from_seconds(to_s), to.linear(),
+                so3_log(from.linear().transpose() * to.linear()) * kFrameHz,
+                to.translation() - from.translation()});
   }
-
-  const StampNs step_ns_;
-  const double seen_factor_;
-  StampNs now_ns_ = from_ms(1000), felt_ns_ = from_ms(1000);
-  MotionRecord record_;
-};
-
-Agreement judged(const Turning& turning) {
-  return gyro_agreement(turning.record(), Eigen::Vector3d::Zero());
+  return record;
 }
 
-TEST(GyroAgreement, OpposedTurnsContradictAndTheSameAgree) {
-  EXPECT_EQ(judged(Turning(from_ms(100), -1).turn(6)), Agreement::contradicts);
-  EXPECT_EQ(judged(Turning(from_ms(100), 1).turn(10)), Agreement::agrees);
-  EXPECT_EQ(judged(Turning(from_ms(100), 1).turn(9)), Agreement::unknown);
-  EXPECT_EQ(judged(Turning(from_ms(100), -1).stand(20)), Agreement::unknown);
+TEST(ImuAgreement, OfARightImuAllAgree) {
+  const MotionRecord record = played(looking_about);
+  EXPECT_EQ(gyro_agreement(record, Vector3d::Zero()), Agreement::agrees);
+  EXPECT_EQ(force_agreement(record), Agreement::agrees);
+  EXPECT_EQ(sign_agreement(record), Agreement::agrees);
+  EXPECT_NEAR(gyro_factor(record).value_or(0), 1, 0.02);
+  EXPECT_FALSE(stamps_ahead_ns(record));
+  EXPECT_LT((*mean_force_m_s2(record) - Vector3d(0, 0, 9.81)).norm(), 1.0);
 }
 
-/// Four contradicting steps are needed: the verdict goes when the first of them is `age` of these steps old.
-void expect_window_of(int age, StampNs step_ns) {
-  EXPECT_EQ(judged(Turning(step_ns, -1).turn(4).stand(age - 4)), Agreement::contradicts) << "within it";
-  EXPECT_EQ(judged(Turning(step_ns, -1).turn(4).stand(age - 3)), Agreement::unknown) << "at its border";
+TEST(ImuAgreement, ADeviceThatStandsTellsNothingOfGyroAndSign) {
+  const MotionRecord record = played(standing);
+  EXPECT_EQ(gyro_agreement(record, Vector3d::Zero()), Agreement::unknown);
+  EXPECT_EQ(sign_agreement(record), Agreement::unknown);
+  EXPECT_EQ(force_agreement(record), Agreement::agrees);
+  EXPECT_FALSE(gyro_factor(record));
+  EXPECT_FALSE(stamps_ahead_ns(record));
 }
 
-TEST(GyroAgreement, StepsCountForLessThanThreeSeconds) {
-  expect_window_of(30, from_ms(100));
+TEST(ImuAgreement, OfNothingNothingIsKnown) {
+  const MotionRecord record;
+  EXPECT_EQ(gyro_agreement(record, Vector3d::Zero()), Agreement::unknown);
+  EXPECT_EQ(force_agreement(record), Agreement::unknown);
+  EXPECT_EQ(sign_agreement(record), Agreement::unknown);
+  EXPECT_FALSE(mean_force_m_s2(record) || gyro_factor(record) || stamps_ahead_ns(record));
 }
 
-TEST(GyroAgreement, TwelveStepsCountWhereFramesAreRare) {
-  expect_window_of(12, from_ms(1000));
+TEST(ImuAgreement, ABiasIsTakenOffTheGyroBeforeItIsCompared) {
+  const Vector3d bias_rad_s(0.4, -0.3, 0.2);
+  const MotionRecord record =
+      played(looking_about, [&](ImuSample& s) { s.angular_velocity_rad_s += bias_rad_s; });
+  EXPECT_EQ(gyro_agreement(record, bias_rad_s), Agreement::agrees);
+  EXPECT_EQ(gyro_agreement(record, Vector3d::Zero()), Agreement::contradicts);
 }
 
-TEST(GyroFactor, CountsTheSameStepsAsTheAgreement) {
-  const auto factor = [](int standing) {
-    return gyro_factor(Turning(from_ms(100), 1).turn(4).stand(standing).record());
+TEST(ImuAgreement, AGyroInOtherUnitsOrTurnedContradictsAndTheFactorTellsWhich) {
+  const auto degrees_per_second = [](ImuSample& s) { s.angular_velocity_rad_s *= 180 / M_PI; };
+  const auto axes = [](ImuSample& s) {
+    const Vector3d w = s.angular_velocity_rad_s;
+    s.angular_velocity_rad_s = {w.y(), w.z(), w.x()};
   };
-  ASSERT_TRUE(factor(26) && factor(29));
-  EXPECT_NEAR(*factor(26), 1, 0.05);
-  EXPECT_FALSE(factor(30)) << "it only stood in the last three seconds";
+  const MotionRecord units = played(looking_about, degrees_per_second), turned = played(looking_about, axes);
+  EXPECT_EQ(gyro_agreement(units, Vector3d::Zero()), Agreement::contradicts);
+  EXPECT_EQ(gyro_agreement(turned, Vector3d::Zero()), Agreement::contradicts);
+  EXPECT_NEAR(gyro_factor(units).value_or(0), 180 / M_PI, 2);
+  EXPECT_FALSE(gyro_factor(turned)) << "it is no multiple";
+}
+
+TEST(ImuAgreement, AnInvertedForceIsFoundBySignAloneAndAScaledOneByItsSize) {
+  const MotionRecord inverted =
+      played(looking_about, [](ImuSample& s) { s.specific_force_m_s2 = -s.specific_force_m_s2; });
+  EXPECT_EQ(force_agreement(inverted), Agreement::agrees) << "as much gravity, which stays where it is";
+  EXPECT_EQ(sign_agreement(inverted), Agreement::contradicts);
+  const MotionRecord scaled = played(looking_about, [](ImuSample& s) { s.specific_force_m_s2 *= 1.5; });
+  EXPECT_EQ(force_agreement(scaled), Agreement::contradicts);
+}
+
+TEST(ImuAgreement, AForceThatTurnsWithTheDeviceContradicts) {
+  const auto turning = [](double t) { return scene::looking({3, 2.5, 1.2}, 0.8 * t, 0.2); };
+  const MotionRecord record =
+      played(turning, [](ImuSample& s) { s.specific_force_m_s2 = Vector3d(9.81, 0, 0); });
+  EXPECT_EQ(force_agreement(record), Agreement::contradicts);
+}
+
+TEST(ImuAgreement, StampsThatAreAheadOrBehindAreFoundToAFrame) {
+  for (const double ahead_s : {-0.9, -0.2, 0.1, 0.6}) {
+    const MotionRecord record =
+        played(looking_about, [&](ImuSample& s) { s.stamp_ns += from_seconds(ahead_s); });
+    const auto found = stamps_ahead_ns(record);
+    ASSERT_TRUE(found) << ahead_s;
+    EXPECT_NEAR(to_seconds(*found), ahead_s, 0.02);
+  }
 }
 
 }  // namespace

@@ -79,40 +79,5 @@ TEST(Depth, AnImageOfAnotherSizeIsRefused) {
   EXPECT_FALSE(depth_to_cloud(image, kCamera));
 }
 
-TEST(Camera, ZeroIntrinsicsAreNamed) {
-  Camera camera = kCamera;
-  camera.fx = 0;
-  EXPECT_THAT(camera.validated("site.json: ceiling0").error().message, testing::HasSubstr("ceiling0.fx is 0"));
-  camera = kCamera;
-  camera.depth_scale_m = NAN;
-  EXPECT_FALSE(camera.validated("x"));
-  EXPECT_TRUE(kCamera.validated("x"));
-}
-
-TEST(Camera, AnglesOfViewAndScalesThatNoSensorHasAreNamed) {
-  const auto error_with = [](double fx, double fy, double scale_m) {
-    Camera camera = kCamera;
-    camera.fx = fx;
-    camera.fy = fy;
-    camera.depth_scale_m = scale_m;
-    const auto valid = camera.validated("x");
-    return valid ? std::string("none") : valid.error().message;
-  };
-  EXPECT_THAT(error_with(0.5, 52, 0.001), testing::HasSubstr("x.fx is 0.5: 64 pixels would see 178 deg"));
-  EXPECT_THAT(error_with(50, 1e12, 0.001), testing::HasSubstr("x.fy is 1000000000000"));
-  EXPECT_THAT(error_with(50, NAN, 0.001), testing::HasSubstr("x.fy is nan"));
-  EXPECT_THAT(error_with(50, 52, 1), testing::HasSubstr("x.depth_scale is 1"));
-  EXPECT_THAT(error_with(50, 52, 1e-6), testing::HasSubstr("x.depth_scale is 1e-06"));
-  EXPECT_EQ(error_with(50, 52, 0.00025), "none");
-  EXPECT_TRUE((Camera{1024, 16, 512, 800, 512, 8, 0.001}.validated("few rows")));
-}
-
-TEST(Camera, AShrunkCameraSeesTheSameRays) {
-  const Camera small = shrunk(kCamera, 4);
-  EXPECT_EQ(small.width, 16);
-  // The centre of small pixel u covers big pixels 4u..4u+3, whose mean is 4u + 1.5.
-  EXPECT_NEAR((5 - small.cx) / small.fx, (21.5 - kCamera.cx) / kCamera.fx, 1e-12);
-}
-
 }  // namespace
 }  // namespace liloc

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "common/recording/new_folder.hpp"
 #include "common/recording/tests/temporary_folder.hpp"
 #include "common/recording/writer.hpp"
 
@@ -84,22 +83,6 @@ TEST_F(TumFolder, AStopEndsIt) {
       HasSubstr("stopped by a signal"));
   EXPECT_THAT(device_to_tum(device, folder_.path() / "tum2", stopped).error().message,
               HasSubstr("stopped by a signal"));
-}
-
-TEST_F(TumFolder, ANewFolderAppearsWholeOrNotAtAll) {
-  const fs::path target = folder_.path() / "new/";
-  {
-    const auto folder = NewFolder::beside(target);
-    ASSERT_TRUE(write_tum(folder->path() / "a.tum", {}));
-    EXPECT_FALSE(fs::exists(target));
-  }
-  EXPECT_TRUE(fs::is_empty(folder_.path())) << "it was not kept";
-  auto folder = NewFolder::beside(target);
-  ASSERT_TRUE(write_tum(folder->path() / "a.tum", {}));
-  ASSERT_TRUE(folder->keep());
-  EXPECT_TRUE(fs::exists(target / "a.tum"));
-  EXPECT_FALSE(NewFolder::beside(target));
-  EXPECT_TRUE(fs::exists(target / "a.tum"));
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "common/geometry/pcl.hpp"
-#include "common/registration/features/feature_match.hpp"
 #include "common/testing/watched_room.hpp"
 
 namespace liloc {
@@ -62,22 +61,6 @@ TEST_P(FpfhLaw, APartIsDescribedAsInTheWhole) {
   for (std::size_t i = 0; i < part.size(); ++i)
     EXPECT_TRUE(
         part.descriptors.col(static_cast<Eigen::Index>(i)).isApprox(whole.descriptors.col(part.index[i])));
-}
-
-TEST_P(FpfhLaw, BlocksFindTheNearestDescriptor) {
-  const Cloud cloud = described_cloud(GetParam());
-  const Features room = fpfh(cloud, sample_indices(cloud.size(), 0.5, 1), 0.4),
-                 device = fpfh(cloud, sample_indices(cloud.size(), 0.1, 2), 0.3);
-  std::vector<std::uint32_t> odd, even;
-  for (std::uint32_t i = 0; i < room.size(); ++i) (i % 2 == 0 ? even : odd).push_back(i);
-  std::vector<FeatureBlock::Nearest> nearest(device.size());
-  for (const auto* columns : {&odd, &even}) FeatureBlock(room, *columns).improve(device, &nearest);
-  ASSERT_GT(device.size(), 10U);
-  for (std::size_t i = 0; i < device.size(); ++i) {
-    const auto asked = device.descriptors.col(static_cast<Eigen::Index>(i));
-    const float least = (room.descriptors.colwise() - asked).colwise().norm().minCoeff();
-    EXPECT_LE((room.descriptors.col(nearest[i].column) - asked).norm(), least * 1.001F + 0.1F);
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, FpfhLaw, testing::Range(1U, 4U));

@@ -4,28 +4,13 @@
 #include <pcl/features/normal_3d.h>
 #include <pcl/search/kdtree.h>
 
-#include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "common/geometry/pcl.hpp"
-#include "common/registration/points/neighbors.hpp"
+#include "common/registration/points/tests/wavy_sheet.hpp"
 
 namespace liloc {
 namespace {
-
-/// A wavy sheet with noise: curved enough that every normal differs.
-Cloud wavy_sheet(unsigned seed) {
-  std::mt19937 rng(seed);
-  std::uniform_real_distribution<float> unit(-1, 1);
-  std::normal_distribution<float> noise(0, 0.002F);
-  Cloud cloud;
-  for (int i = 0; i < 4000; ++i) {
-    const float x = unit(rng), y = unit(rng);
-    cloud.points.emplace_back(x, y, 0.2F * std::sin(3 * x) * std::cos(2 * y) + noise(rng));
-  }
-  return voxel_downsample(cloud, 0.05);
-}
 
 class NormalLaw : public testing::TestWithParam<unsigned> {};
 
@@ -51,27 +36,6 @@ TEST_P(NormalLaw, AgreesWithPcl) {
 TEST_P(NormalLaw, NormalsFaceTheSensor) {
   const Cloud below = with_normals(wavy_sheet(GetParam()), {0, 0, -3});
   for (const auto& n : below.normals) EXPECT_LT(n.z(), 0);
-}
-
-TEST_P(NormalLaw, NeighborhoodsAreWhatBruteForceFinds) {
-  Cloud sheet = wavy_sheet(GetParam());
-  sheet.points.emplace_back(NAN, 0.0F, 0.0F);
-  sheet.points.emplace_back(1e30F, -1e30F, 0.0F);  // beyond what a cell's key can tell
-  const RadiusSearch search(sheet.points, 0.15);
-  std::size_t visited = 0;
-  search.for_each_neighborhood([&](std::uint32_t i, const RadiusSearch::Neighborhood& near) {
-    ++visited;
-    const Eigen::Vector3f& p = sheet.points[i];
-    if (std::abs(p.x()) > 2) return;
-    std::vector<std::uint32_t> expected, found(near.index.begin(), near.index.end());
-    for (std::uint32_t k = 0; k < sheet.size(); ++k)
-      if ((sheet.points[k] - p).norm() <= 0.15F) expected.push_back(k);
-    std::ranges::sort(found);
-    ASSERT_EQ(found, expected);
-    for (std::size_t k = 0; k < near.index.size(); ++k)
-      ASSERT_NEAR(std::sqrt(near.squared[k]), (sheet.points[near.index[k]] - p).norm(), 1e-5F);
-  });
-  EXPECT_EQ(visited, sheet.size() - 1) << "all but what is no number";
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, NormalLaw, testing::Range(1U, 5U));

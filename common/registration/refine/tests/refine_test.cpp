@@ -2,23 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "common/registration/refine/plane_pairs.hpp"
+#include "common/testing/small_motion.hpp"
 #include "common/testing/watched_room.hpp"
 
 namespace liloc {
 namespace {
-
-Pose small_motion(unsigned seed, double angle_rad, double shift_m) {
-  std::mt19937 rng(seed);
-  std::normal_distribution<double> unit(0, 1);
-  Vector6d a;
-  for (int i = 0; i < 6; ++i) a[i] = unit(rng);
-  a.head<3>() *= angle_rad / a.head<3>().norm();
-  a.tail<3>() *= shift_m / a.tail<3>().norm();
-  return increment(a);
-}
 
 class RefineLaw : public testing::TestWithParam<unsigned> {};
 
@@ -41,34 +29,6 @@ TEST_P(RefineLaw, MovingTheSensorFrameMovesTheAnswerEqually) {
   const Pose there = refine(w.target, moved, guess * T_sensor_moved).T_target_source;
   EXPECT_LT(distance_m(there, here * T_sensor_moved), 0.01);
   EXPECT_LT(angle_between_rad(there, here * T_sensor_moved), 0.005);
-}
-
-TEST_P(RefineLaw, PairsEightAtATimeAreThePairsOneByOne) {
-  const WatchedRoom w = watched_room(GetParam());
-  const Side side{w.target->cloud, w.target->nearest, w.query.medium};
-  const Pose T = w.T_map_device * small_motion(GetParam(), radians(2), 0.05);
-  PlanePairs pairs(side);
-  for (const double distance_m : {0.2, 0.06}) {
-    NormalEquations expected;
-    for_each_pair(side, T, distance_m, 0.5,
-                  [&](std::size_t, const Eigen::Vector3f& arm, const Eigen::Vector3f& normal,
-                      const Eigen::Vector3f& offset, double weight) {
-                    const Vector6d jacobian = jacobian_of(arm, normal);
-                    const auto residual = static_cast<double>(normal.dot(offset));
-                    expected.H += weight * jacobian * jacobian.transpose();
-                    expected.g += weight * residual * jacobian;
-                    expected.squared += weight * residual * residual;
-                    expected.weight += weight;
-                    ++expected.pairs;
-                  });
-    const NormalEquations got = pairs.at(T, distance_m, 0.5);
-    ASSERT_GT(expected.pairs, 50);
-    EXPECT_LE(std::abs(got.pairs - expected.pairs), 2) << "of those at the very limit";
-    EXPECT_LT((got.H - expected.H).norm(), 2e-3 * expected.H.norm());
-    EXPECT_LT((got.g - expected.g).norm(), 2e-3 * expected.H.norm() * distance_m);
-    EXPECT_NEAR(got.squared, expected.squared, 5e-3 * expected.squared);
-    EXPECT_NEAR(got.weight, expected.weight, 2e-3 * expected.weight);
-  }
 }
 
 TEST_P(RefineLaw, AnApproachComesNearer) {

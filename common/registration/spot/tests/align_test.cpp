@@ -77,25 +77,6 @@ TEST_P(AlignLaw, ARoomThatLooksTheSameAfterAHalfTurnIsNotTrusted) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, AlignLaw, testing::Range(1U, 7U));
 
-TEST(AlignConfidence, OfTwoThatAreAlikeNeitherIsLikelierThanNot) {
-  for (const double odds : {-5.0, 0.0, 3.0, 30.0}) {
-    EXPECT_LE(confidence_of({odds, odds}), 0.5);
-    EXPECT_LE(confidence_of({odds, odds - 1}), confidence_of({odds, odds - 2}));
-    EXPECT_LT(confidence_of({odds}), confidence_of({odds + 1}));
-  }
-}
-
-TEST(AlignConfidence, EmptySpaceSpeaksAgainstAndFeaturesSpeakFor) {
-  AlignEvidence evidence;
-  evidence.agree = 500;
-  evidence.matched = 40;
-  AlignEvidence more = evidence, contradicted = evidence;
-  more.matched = 80;
-  contradicted.conflict = 20;
-  EXPECT_GT(log_odds_of(more), log_odds_of(evidence));
-  EXPECT_LT(log_odds_of(contradicted), log_odds_of(evidence));
-}
-
 TEST(AlignOptions, TheRiskIsAProbability) {
   const Cloud cloud = fragment_pair(1, 0).source;
   for (const double risk : {0.0, 1.0, -0.1, std::nan("")}) {
@@ -103,6 +84,64 @@ TEST(AlignOptions, TheRiskIsAProbability) {
     options.risk = risk;
     EXPECT_FALSE(align_clouds(cloud, cloud, options)) << risk;
   }
+}
+
+bool near(const Pose& a, const Pose& b) {
+  return distance_m(a, b) < 0.1 && degrees(angle_between_rad(a, b)) < 3;
+}
+
+Cloud two_walls_and_a_box(unsigned seed) {
+  const scene::BoxRoom room = scene::furnished_room(seed);
+  Cloud cloud;
+  for (double yaw = 0; yaw < 1.6; yaw += 0.5) {
+    const Pose T = scene::looking({3, 2.5, 1.3}, yaw);
+    append(cloud, transformed(T, *depth_to_cloud(scene::render(room, T, scene::small_camera(), 1, 0.004, seed),
+                                                 scene::small_camera())));
+  }
+  return transformed(scene::looking({3, 2.5, 1.3}, 0.7).inverse(), cloud);
+}
+
+TEST(Align, MapsTheSourceIntoTheTarget) {
+  for (unsigned seed : {1U, 2U, 3U}) {
+    const Cloud target = two_walls_and_a_box(seed);
+    Vector6d a;
+    a << 0.2, 0.5, -0.1, 0.6, -0.2, 0.4;
+    const Pose T_target_source = increment(a);
+    const auto result = align_clouds(transformed(T_target_source.inverse(), target), target, {});
+    ASSERT_TRUE(result);
+    EXPECT_TRUE(near(result->T_target_source, T_target_source)) << "seed " << seed;
+    EXPECT_GT(result->fitness, 0.9);
+  }
+}
+
+TEST(Align, HostileCloudsAreErrorsOrUntrusted) {
+  const Cloud good = two_walls_and_a_box(1);
+  Cloud one, planar, nan, same;
+  one.points = {{0, 0, 1}};
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j) planar.points.emplace_back(0.03F * i, 0.03F * j, 2.0F);
+  nan.points.assign(1000, Eigen::Vector3f(NAN, NAN, NAN));
+  same.points.assign(100000, Eigen::Vector3f(1, 1, 1));
+  for (const Cloud& bad : {Cloud{}, one, nan, same}) {
+    EXPECT_FALSE(align_clouds(bad, good, {}));
+    EXPECT_FALSE(align_clouds(good, bad, {}));
+  }
+  const auto flat = align_clouds(planar, planar, {});
+  EXPECT_TRUE(!flat || !flat->trusted) << "a plane slides on itself";
+  AlignOptions options;
+  options.voxel_size_m = 0;
+  EXPECT_FALSE(align_clouds(good, good, options));
+}
+
+TEST(Align, CloudsFarFromTheirOriginAreErrorsAndASinglePointThereIsNot) {
+  const Cloud good = two_walls_and_a_box(1);
+  Cloud far = good, one_far = good;
+  for (Eigen::Vector3f& p : far.points) p.x() += 1e6F;
+  one_far.points.emplace_back(1e7F, 1e7F, 1e7F);
+  const auto result = align_clouds(far, good, {});
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().message.find("source"), std::string::npos) << result.error().message;
+  EXPECT_TRUE(align_clouds(one_far, good, {}));
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // What a wrong or hostile recording gets: one line that names file, field and remedy, and never a crash.
+#include "common/recording/recording.hpp"
+
 #include <gmock/gmock.h>
 #include <png.h>
 

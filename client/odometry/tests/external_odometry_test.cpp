@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "client/engine/tests/walker.hpp"
+#include "common/testing/walk.hpp"
 
 namespace liloc {
 namespace {
@@ -105,45 +105,6 @@ TEST(ExternalOdometry, TheCovariancesGrowthIsTheMotionsError) {
   static_cast<void>(odometry.step(at(0.2)));
   odometry.mark();
   EXPECT_NEAR(odometry.step(at(1.0)).sd_m, std::sqrt(8e-4), 1e-9);
-}
-
-/// Frames and wheels into an engine: only the global part is done.
-TEST(ExternalOdometryEngine, RequestsCarryTheWheelsPoses) {
-  EngineOptions options = engine_options();
-  options.local = LocalMethod::external;
-  Engine engine(options);
-  const auto room = scene::furnished_room(2);
-  for (double t = 0; t < 4; t += 0.02) ASSERT_TRUE(engine.add_odometry({at(t), walk(t), std::nullopt}));
-  int requests = 0;
-  for (int i = 0; i < 40; ++i) {
-    const auto frame = engine.add_depth(frame_at(room, i));
-    ASSERT_TRUE(frame);
-    EXPECT_EQ(frame->source, PoseSource::external);
-    EXPECT_LT(distance_m(frame->T_odom_sensor, walk(time_of(i))), 1e-3);
-    const auto request = engine.take_request();
-    if (!request) continue;
-    ++requests;
-    EXPECT_LT(distance_m(request->T_odom_sensor, walk(time_of(i))), 1e-3);
-    EXPECT_FALSE(request->lpc.bytes.empty());
-    EXPECT_EQ(request->local_poses.back().stamp_ns, request->stamp_ns);
-  }
-  EXPECT_EQ(requests, 4);  // 2.6 s at one in 0.8 s
-}
-
-TEST(ExternalOdometryEngine, AFrameWithoutAPoseIsNotSent) {
-  EngineOptions options = engine_options();
-  options.local = LocalMethod::external;
-  Engine engine(options);
-  const auto room = scene::furnished_room(2);
-  const auto frame = engine.add_depth(frame_at(room, 0));
-  ASSERT_TRUE(frame);
-  EXPECT_FALSE(frame->informative || frame->converged);
-  EXPECT_FALSE(engine.take_request());
-}
-
-TEST(ExternalOdometryEngine, IsRefusedWithAnotherMethod) {
-  Engine engine(engine_options());
-  EXPECT_FALSE(engine.add_odometry({kStart, Pose::Identity(), std::nullopt}));
 }
 
 }  // namespace

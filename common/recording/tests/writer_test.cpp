@@ -1,10 +1,11 @@
+#include "common/recording/writer.hpp"
+
 #include <gmock/gmock.h>
 
 #include <random>
 
 #include "common/recording/imu_table.hpp"
 #include "common/recording/tests/temporary_folder.hpp"
-#include "common/recording/writer.hpp"
 
 namespace liloc {
 namespace {

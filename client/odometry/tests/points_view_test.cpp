@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "client/engine/tests/walker.hpp"
-#include "common/codec/codec.hpp"
 #include "common/geometry/depth.hpp"
+#include "common/testing/walk.hpp"
 
 namespace liloc {
 namespace {
@@ -37,34 +36,6 @@ TEST(PointsView, WhatLiesOutsideTheViewIsLeftOut) {
   const Camera camera = scene::small_camera();
   const Cloud cloud{{{0, 0, 2}, {0, 0, 0.1F}, {0, 0, 20}, {9, 0, 2}, {0, 0, -2}}, {}};
   EXPECT_EQ(within_view(cloud, camera, 0.25, 8.5).size(), 1U);
-}
-
-/// The same walk as clouds and as images: the odometry must follow either.
-TEST(PointsView, AnEngineFollowsClouds) {
-  const auto room = scene::furnished_room(1);
-  Engine engine(engine_options());
-  FrameResult first, now;
-  for (int i = 0; i < 60; ++i) {
-    const auto cloud = depth_to_cloud(frame_at(room, i), scene::small_camera(), {});
-    const auto frame = engine.add_points(stamp_of(i), *cloud);
-    ASSERT_TRUE(frame) << frame.error().message;
-    now = *frame;
-    if (i == 0) first = now;
-    EXPECT_TRUE(now.informative && now.converged) << i;
-    if (const auto request = engine.take_request()) {
-      EXPECT_GT(decode(request->lpc)->size(), 500U);
-    }
-  }
-  const Pose truth = walk(time_of(0)).inverse() * walk(time_of(59));
-  EXPECT_LT(distance_m(truth, first.T_odom_sensor.inverse() * now.T_odom_sensor), 0.03);
-}
-
-TEST(PointsView, AnEmptyCloudIsAFrameThatSaysNothing) {
-  Engine engine(engine_options());
-  const auto frame = engine.add_points(kStart, Cloud{});
-  ASSERT_TRUE(frame);
-  EXPECT_FALSE(frame->informative);
-  EXPECT_FALSE(engine.take_request());
 }
 
 }  // namespace

@@ -66,6 +66,7 @@ class ArchiveIn {
     return status_ ? count : 0;
   }
   void block(void* data, std::size_t size) {
+    if (size == 0) return;  // `data` may be null
     if (!status_ || size > bytes_.size() - at_) {
       require(false, "the end, too early");
       std::memset(data, 0, size);

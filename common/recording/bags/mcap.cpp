@@ -23,7 +23,7 @@ class Record {
   T number() {
     T value{};
     const std::string_view raw = take(sizeof(T));
-    std::memcpy(&value, raw.data(), raw.size());
+    if (good_) std::memcpy(&value, raw.data(), sizeof(T));
     return value;
   }
   std::string_view take(std::uint64_t size) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <string>
@@ -47,6 +48,20 @@ std::map<std::string, Words> read_header(std::istream& in) {
     if (keyword == "DATA") return header;
   }
   return {};
+}
+
+/// The keyword that follows DATA, empty where none does: PCL takes it for more of the header.
+std::string keyword_after_data(std::istream& in) {
+  in.clear();  // the file may end with the line
+  const auto data_at = in.tellg();
+  for (in >> std::ws; in.peek() == '#'; in >> std::ws)
+    in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  std::string word(std::strlen("VIEWPOINT"), '\0');  // the longest
+  in.read(word.data(), static_cast<std::streamsize>(word.size()));
+  in.clear();
+  in.seekg(data_at);
+  const auto found = std::ranges::find_if(kKeywords, [&](const char* one) { return word.starts_with(one); });
+  return found == kKeywords.end() ? "" : *found;
 }
 
 /// A whole number in [low, high], or -1.
@@ -124,6 +139,8 @@ Status check_pcd_header(const std::filesystem::path& file) {
   if (kind != "ascii" && kind != "binary" && kind != "binary_compressed")
     return fail("{}: its DATA is '{}'; PCD has ascii, binary and binary_compressed", name,
                 command::excerpt(kind));
+  if (const std::string more = keyword_after_data(in); !more.empty())
+    return fail("{}: has {} after DATA; write it anew", name, more);
   const double left = static_cast<double>(std::filesystem::file_size(file)) - static_cast<double>(in.tellg());
   if (left < (kind == "binary" ? points * each : 0) || (kind == "ascii" && left < points) ||
       (kind == "binary_compressed" && points > 0 && !unpacks_to(in, points * each, left)))

@@ -321,6 +321,9 @@ TEST_F(CommandLine, PcdFilesThatLieAreRefusedBeforeRoomIsMadeForThem) {
            {fields + "WIDTH 1\nHEIGHT 1\nPOINTS 7\nDATA ascii\n0 0 0\n", "POINTS"},
            {fields + "WIDTH 1000\nHEIGHT 1000\nPOINTS 1000000\nDATA binary\n0 0 0\n", "claims"},
            {fields + "WIDTH 1000\nHEIGHT 1000\nDATA ascii\n0 0 0\n", "claims"},
+           {fields + one + "DATA ascii\n\n# more\nFIELDS x y\n1 2 3\n", "FIELDS after DATA"},
+           {fields + one + "DATA binary\nSIZE 6 4 4\n000000", "SIZE after DATA"},
+           {fields + one + "DATA ascii", "claims"},
            {fmt::format("{}{}DATA binary_compressed\n{}0000", fields, one, unpacked), "claims"}}) {
     ASSERT_TRUE(write_file(folder_.path() / "lie.pcd", text));
     const Outcome outcome = liloc("align " + path("lie.pcd") + " " + path("lie.pcd"));

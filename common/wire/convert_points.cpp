@@ -30,7 +30,7 @@ Result<Xyz> xyz_of(const sensor_msgs_msg_dds__PointCloud2_& m) {
 
 Status check_layout(const sensor_msgs_msg_dds__PointCloud2_& m) {
   const std::uint64_t count = std::uint64_t{m.width} * m.height;
-  if (count > kMaxPoints)
+  if (count > kMaxPoints || m.height > kMaxPoints)  // rows without points cost time as well
     return fail("cloud has {} x {} points, must be up to {}", m.width, m.height, kMaxPoints);
   if (m.row_step < std::uint64_t{m.width} * m.point_step)
     return fail("row_step is {}, {} points of {} bytes need more", m.row_step, m.width, m.point_step);

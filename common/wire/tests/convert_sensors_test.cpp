@@ -188,6 +188,11 @@ TEST(ConvertPoints, HostileFieldsAreNamed) {
       {"row_step", [](auto& s) { s.message.row_step = 4; }},
       {"data", [](auto& s) { s.message.data._length = 3; }},
       {"points", [](auto& s) { s.message.width = s.message.height = 0xffffffff; }},
+      {"points",
+       [](auto& s) {
+         s.message.width = s.message.row_step = s.message.data._length = 0;
+         s.message.height = 0xffffffff;
+       }},
   };
   const Cloud cloud{{{1, 2, 3}, {4, 5, 6}}, {}};
   for (const auto& [field, spoil] : cases) {

@@ -43,6 +43,18 @@ TEST(FrameContent, ALargeImagesSamplesTellTheSame) {
   EXPECT_NEAR(content.range_m, 2.5, 1e-6);
 }
 
+TEST(FrameContent, SamplesLeaveNoColumnOutWhateverTheWidth) {
+  for (const int width : {224, 352, 640, 672, 1001}) {
+    const Camera camera{width, 240, 500, 500, 0.5 * width, 120, 0.001};
+    DepthImage image = image_of(camera, {});
+    for (std::size_t i = 0; i < image.units.size();
+         ++i)  // in one column of seven and one of eleven nothing returns
+      if (const std::size_t u = i % static_cast<std::size_t>(width); u % 7 != 0 && u % 11 != 0)
+        image.units[i] = 2500;
+    EXPECT_NEAR(content_of(image, camera).returns, 6.0 / 7 * 10 / 11, 0.01) << width;
+  }
+}
+
 TEST(FrameContent, OfPointsCountsThoseBeforeTheSensorAgainstThePixels) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Cloud cloud{{{0, 0, -1}, {nan, 0, 2}}, {}};

@@ -27,9 +27,14 @@ Result<std::shared_ptr<const Spot>> spot_of(DeviceSession& session, const SpotRe
                                             std::shared_ptr<const CellBounds> bounds) {
   if (request.cold || options.method != Method::liloc)
     return Spot::create(request, std::move(room), options, std::move(bounds));
-  auto spot = Spot::create(
-      request, std::move(room), options, std::move(bounds),
-      [&](const Cloud& cloud_sensor) { return session.earlier_views.moving(request, cloud_sensor); });
+  // A pose that is followed rests on odometry: what odometry says has moved must still be able to contradict
+  // it.
+  const bool followed =
+      session.segment() && session.segment()->id == request.odom_segment && session.segment()->followed;
+  auto spot =
+      Spot::create(request, std::move(room), options, std::move(bounds), [&](const Cloud& cloud_sensor) {
+        return followed ? std::vector<std::uint32_t>() : session.earlier_views.moving(request, cloud_sensor);
+      });
   if (spot) session.earlier_views.add(request, (*spot)->query().view);
   return spot;
 }

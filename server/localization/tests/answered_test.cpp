@@ -60,6 +60,26 @@ TEST_P(Passer, CountsWhereARequestStandsAloneAndForThePapersMethods) {
   EXPECT_TRUE(spot(seen(2, true), paper)->moving().empty());
   EXPECT_FALSE(spot(seen(3, true))->moving().empty());
 }
+
+/// Odometry that slips moves the whole room: what contradicts it must count.
+TEST_P(Passer, CountsWhereOdometryIsWhatAPoseRestsOn) {
+  DeviceSession::Segment followed{seen(0, false).odom_segment};
+  followed.followed.emplace();
+  DeviceSession session({}, followed);
+  const auto moving = [&](const SpotRequest& request) {
+    return spot_of(session, request, world_.cloud->nearest(request.stamp_ns).value(), {}).value()->moving();
+  };
+  (void)moving(seen(0, false));
+  EXPECT_TRUE(moving(seen(1, true)).empty());
+  (void)moving(seen(2, false));
+  SpotRequest other = seen(3, false);
+  other.odom_segment += 1;
+  (void)moving(other);
+  other = seen(4, true);
+  other.odom_segment += 1;
+  EXPECT_FALSE(moving(other).empty()) << "of a new segment nothing is followed yet";
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, Passer, testing::Range(1U, 4U));
 
 }  // namespace

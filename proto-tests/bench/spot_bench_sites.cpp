@@ -8,7 +8,7 @@
 
 #include "proto-tests/replay/timeline.hpp"
 #include "proto-tests/replay/truth.hpp"
-#include "proto-tests/sim/random.hpp"
+#include "proto-tests/sim/base/random.hpp"
 
 namespace liloc::bench {
 namespace {

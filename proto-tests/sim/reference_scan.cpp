@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "common/geometry/voxel.hpp"
-#include "proto-tests/sim/ray_caster.hpp"
+#include "proto-tests/sim/shapes/ray_caster.hpp"
 
 namespace liloc::sim {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "proto-tests/sim/inertial.hpp"
-#include "proto-tests/sim/other_world.hpp"
+#include "proto-tests/sim/motion/inertial.hpp"
+#include "proto-tests/sim/other_mount.hpp"
 
 namespace liloc::sim {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto-tests/sim/depth_sensor.hpp"
 #include "proto-tests/sim/reference_scan.hpp"
 #include "proto-tests/sim/rig.hpp"
+#include "proto-tests/sim/sensors/depth_sensor.hpp"
 #include "proto-tests/sim/world.hpp"
 
 namespace liloc::sim {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "proto-tests/sim/other_world.hpp"
+#include "proto-tests/sim/motion/other_people.hpp"
 
 namespace liloc::sim {
 namespace {

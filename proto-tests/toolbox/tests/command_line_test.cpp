@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "common/recording/files.hpp"
-#include "common/wire/status.hpp"
+#include "common/wire/spots/status.hpp"
 #include "proto-tests/replay/tests/small_recording.hpp"
 #include "proto-tests/toolbox/tests/program_test.hpp"
 

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 constexpr double kGyroNoise = 0.003, kForceNoise = 0.04;
 constexpr double kGyroBias = 0.003, kForceBias = 0.05;
 constexpr double kGyroWalk = 2e-5, kForceWalk = 4e-4;  // per square root of a second
-constexpr double kDifference_s = 1e-4;
+constexpr double kDifference_s = 1e-4;                 // of differences that stand for derivatives
 
 }  // namespace
 

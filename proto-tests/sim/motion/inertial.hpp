@@ -8,7 +8,7 @@
 
 namespace liloc::sim {
 
-constexpr double kGravity_m_s2 = 9.80665;
+constexpr double kGravity_m_s2 = 9.80665;  // the standard one
 
 /// Where the IMU sits in a device: its axes are x forward, y left, z up.
 [[nodiscard]] Pose mounted_imu();  // T_imu_sensor

@@ -7,7 +7,7 @@
 
 namespace liloc::sim {
 
-constexpr double kWalkStep_s = 0.1;
+constexpr double kWalkStep_s = 0.1;  // between the places of a walk, which a spline joins; by hand
 
 struct WalkStyle {
   double speed_m_s = 1.2;

@@ -21,8 +21,8 @@ constexpr float kNearest_m = 0.5F, kFarthest_m = 8.0F;  // the least and greates
 // Share of pixels with depth: 0.89 in the kitchen, within 3 m, and 0.77 in the classroom, up to 8 m, most of
 // what is lost being dark, shiny or grazed. Logit by hand so that simulated offices lose as much.
 constexpr float kLogitAt2m = 5.5F, kPerLogRange = -1.6F, kPerLogCosine = 1.5F, kDarkLogit = -4.0F;
-constexpr float kGlassLogit = -8.0F;
-constexpr double kHole_rad = 0.02;  // holes are blobs of about ten pixels of 570 per radian
+constexpr float kGlassLogit = -8.0F;  // by hand: nothing comes back
+constexpr double kHole_rad = 0.02;    // holes are blobs of about ten pixels of 570 per radian
 
 /// Where the projector's light does not reach, right to left: a nearer thing further right stands before it.
 void mark_shadow(const View& view, const Camera& camera, int v, std::vector<bool>& shadow) {

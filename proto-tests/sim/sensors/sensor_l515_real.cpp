@@ -15,7 +15,7 @@ constexpr float kGlassLogit = -5.0F;  // by hand: the recording has no glass; no
 constexpr float kSteepest = 0.03F;    // cosine below which the regression has no pixels
 // Noise along the ray by the same logit: 5 mm where every frame has a return, 16 mm where one in four has.
 constexpr float kNoiseAtHalf_m = 0.0138F, kNoisePerLogit_m = -0.0022F;
-constexpr float kLeastNoise_m = 0.0045F, kMostNoise_m = 0.018F;
+constexpr float kLeastNoise_m = 0.0045F, kMostNoise_m = 0.018F;  // about the ends of the fit
 // Neighbours share their noise (0.72 at one of 640 pixels, 0.26 at four) and their losses (0.51 and 0.14).
 constexpr double kGrain_rad = 0.0066;
 // At the outline of a board 3 m away, 1.7 m before a wall: 0.2 to 0.3 fewer returns within a pixel of 320,

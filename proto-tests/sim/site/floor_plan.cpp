@@ -10,7 +10,7 @@ namespace liloc::sim {
 namespace {
 
 using Eigen::Vector2d;
-constexpr double kCell = 0.1;
+constexpr double kCell = 0.1;  // m, of the grid that ways are found on; by hand
 constexpr int kStepX[] = {1, -1, 0, 0, 1, 1, -1, -1}, kStepY[] = {0, 0, 1, -1, 1, -1, 1, -1};
 
 bool covers(const Placement& placement, const Vector2d& half, const Vector2d& p, double radius_m) {

@@ -11,8 +11,8 @@ namespace liloc::sim {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kRackTop_m = 2.25;  // under the lowest LiDAR with what lies on top
-constexpr double kDuctOffWall_m = 0.9;
+constexpr double kRackTop_m = 2.25;     // under the lowest LiDAR with what lies on top
+constexpr double kDuctOffWall_m = 0.9;  // by hand
 
 enum class Flavour { lounge, workshop, store, empty };
 

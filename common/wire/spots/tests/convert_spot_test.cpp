@@ -1,4 +1,4 @@
-// Hostile and odd requests, replies and statuses: each is refused by the name of its field, or understood.
+// Hostile and odd requests and replies: each is refused by the name of its field, or understood.
 #include "common/wire/spots/convert_spot.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "common/wire/dds/convert.hpp"
-#include "common/wire/spots/convert_status.hpp"
 #include "common/wire/spots/tests/samples.hpp"
 
 namespace liloc::wire {
@@ -127,37 +126,6 @@ TEST(ConvertReply, LongTextIsCutAndTerminated) {
   const auto message = to_wire(reply, 1);
   EXPECT_EQ(message.text[200], '\0');
   EXPECT_EQ(from_wire(message)->text.size(), 200U);
-}
-
-TEST(ConvertStatus, RoundTrip) {
-  ServerStatus status;
-  status.server_id = "edge1";
-  status.lidars = {{"ceiling0", LidarState::slow, 2.5, 7, 3, std::string(300, 'e')}};
-  status.codecs = {CloudCodec::voxel, CloudCodec::draco, static_cast<CloudCodec>(77)};
-  auto sample = to_wire(status);
-  const auto back = from_wire(sample.message);
-  ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(back->lidars[0].state, LidarState::slow);
-  EXPECT_EQ(back->lidars[0].last_error.size(), 200U);
-  EXPECT_EQ(back->codecs, status.codecs);
-  sample.message.protocol_version = 99;
-  expect_refused(sample.message, "version 99");
-}
-
-TEST(ConvertStatus, AStateOfANewerServerIsKeptAndCountsForNothing) {
-  ServerStatus status;
-  status.server_id = "edge1";
-  status.lidars = {{"ceiling0"}, {"ceiling1", LidarState::ok}};
-  auto sample = to_wire(status);
-  for (const int state : {8, 9, 255}) {
-    sample.lidars[0].state = static_cast<std::uint8_t>(state);
-    const auto back = from_wire(sample.message);
-    ASSERT_TRUE(back) << back.error().message;
-    EXPECT_EQ(static_cast<int>(back->lidars[0].state), state);
-    EXPECT_EQ(name_of(back->lidars[0].state), "unknown");
-    EXPECT_FALSE(is_heard(back->lidars[0].state));
-    EXPECT_EQ(back->lidars[1].state, LidarState::ok);
-  }
 }
 
 }  // namespace

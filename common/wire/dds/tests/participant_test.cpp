@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "common/wire/dds/participant.hpp"
+
+#include <gtest/gtest.h>
 
 namespace liloc::wire {
 namespace {
@@ -48,6 +48,22 @@ TEST(Profile, WhatIsNoNameOrAddressIsRefused) {
   EXPECT_FALSE(profile_xml({.interface = ""}));
   EXPECT_FALSE(profile_xml({.peers = {"a b"}}));
   EXPECT_FALSE(profile_xml({.receive_buffer_kb = 1}));
+}
+
+TEST(Participant, OneServerSitsInADomainOfAHost) {
+  constexpr int kDomain = 123;  // of this test alone
+  const auto first = Participant::create({.domain = kDomain, .role = Role::server});
+  ASSERT_TRUE(first) << first.error().message;
+  EXPECT_EQ(first->domain(), kDomain);
+  EXPECT_GT(first->handle(), 0);
+  EXPECT_EQ(server_port(2), 7910) << "as the profile of domain 2 names it";
+}
+
+TEST(Participant, WhatCannotJoinIsRefusedBeforeDdsIsAsked) {
+  EXPECT_NE(Participant::create({.domain = 231}).error().message.find("domain"), std::string::npos);
+  const auto locked = Participant::create({.domain = 123, .credentials = "/no/such/folder"});
+  ASSERT_FALSE(locked);
+  EXPECT_NE(locked.error().message.find("/no/such/folder"), std::string::npos) << locked.error().message;
 }
 
 TEST(Profile, ABufferTheKernelDoesNotAllowIsLoweredNotFatal) {

@@ -164,7 +164,7 @@ void fields(A& a, V& t) {
   list(a, t.looks, kMostSpots, [&](auto& look) { fields(a, look); });
   fields(a, t.surfaces);
   fields(a, t.latest);
-  a.number(t.fits);
+  a.number(t.stayed);
 }
 
 template <class A, Of<Followed> V>

@@ -103,7 +103,7 @@ DeviceSession::Found DeviceSession::search_room(const std::shared_ptr<const Spot
   tracks->add(spot, found);
   const Track& best = tracks->best_first().front();
   result.best = best.latest;
-  result.stayed = best.fits;
+  result.stayed = best.stayed;
   result.estimate = estimate_of(*spot, best.latest);
   if (!result.stayed) result.estimate.T_map_sensor = best.T_map_odom * spot->T_odom_sensor();
   result.margin = margin;

@@ -44,7 +44,7 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
     }
   if (!here) {
     here = refine_and_judge(spot.problem(), predicted);
-    if (!same_place(here->T_map_sensor(), predicted, options_.gate) || !liloc::fits(*here, options_))
+    if (!same_place(here->T_map_sensor(), predicted, options_.gate) || !fits(*here, options_))
       here = polish(spot.problem(), predicted, std::move(*here));
   }
   const bool stayed = same_place(here->T_map_sensor(), predicted, options_.gate);
@@ -54,8 +54,8 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
     here->judgement = judge(spot.problem().target, spot.query(), spot.query().medium, predicted,
                             2 * spot.problem().judging.fine_tolerance_m);
   track->latest = *here;
-  track->fits = stayed && liloc::fits(*here, options_);
-  track->looks.push_back(terms_of(here->judgement, track->fits));
+  track->stayed = stayed;
+  track->looks.push_back(terms_of(here->judgement, stayed && fits(*here, options_)));
   track->surfaces.add(spot.problem().target, spot.query(), stayed ? here->T_map_sensor() : predicted);
 }
 
@@ -70,8 +70,8 @@ Track Tracks::founded(const Hypothesis& hypothesis) const {
     track.T_map_odom = T_map_odom;  // looking back does not move it
   }
   track.latest = hypothesis;
-  track.fits = liloc::fits(hypothesis, options_);
-  track.looks.push_back(terms_of(hypothesis.judgement, track.fits));
+  track.stayed = true;
+  track.looks.push_back(terms_of(hypothesis.judgement, fits(hypothesis, options_)));
   track.surfaces.add(newest.problem().target, newest.query(), hypothesis.T_map_sensor());
   return track;
 }

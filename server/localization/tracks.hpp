@@ -17,7 +17,7 @@ struct Track {
   std::deque<LookTerms> looks;  ///< one per spot in memory, newest last
   SurfaceBits surfaces;         ///< that any spot recognized at this place
   Hypothesis latest;            ///< at the newest spot
-  bool fits = false;  ///< whether the newest spot, refined from it, stays with it and is not contradicted
+  bool stayed = false;          ///< whether the newest spot, refined from it, stays with it
 };
 
 /// Defaults are by hand where nothing else is said.

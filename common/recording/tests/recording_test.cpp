@@ -29,6 +29,15 @@ std::string changed(std::string text, const std::string& from, const std::string
   return text.replace(text.find(from), from.size(), to);
 }
 
+/// So many LiDARs in a row, each 18 m from the last along x and y.
+std::string chain_of(int count) {
+  std::string lidars;
+  for (int i = 0; i < count; ++i)
+    lidars += (i > 0 ? "," : "") + changed(changed(kLidar, "c0", "c" + std::to_string(i)), "1,2,3",
+                                           std::to_string(18 * i) + "," + std::to_string(18 * i) + ",3");
+  return lidars;
+}
+
 struct BadSite {
   const char* name;
   std::string text, expected;
@@ -70,9 +79,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "global_lidars[0].fx is 0.5: 64 pixels would see 178 deg"},
         BadSite{"vast_fy", site_of(changed(kLidar, "\"fy\":46", "\"fy\":1e12")), "global_lidars[0].fy is 1"},
         BadSite{"metres_as_scale", site_of(changed(kLidar, "0.001", "1.0")), "depth_scale is 1"},
-        BadSite{"a_kilometre",
-                site_of(kLidar + "," + changed(changed(kLidar, "c0", "c1"), "1,2,3", "1001,2,3")),
-                "c1 hangs 1000 m from the middle one; a site spans at most"},
+        BadSite{
+            "over_a_kilometre",
+            site_of(kLidar + "," + changed(changed(kLidar, "c0", "c1"), "1,2,3", "1021,2,3")),
+            "global_lidars[1].T_map_sensor.translation: c1 hangs 1020 m from the middle one, must be at most"},
+        BadSite{"one_vast_hall", site_of(chain_of(12)), "rooms that hang together span at most 10000 m2"},
         BadSite{"sixty_kilometres",
                 site_of(kLidar + "," + changed(changed(kLidar, "c0", "c1"), "1,2,3", "1,60000,3")),
                 "global_lidars[1].T_map_sensor.translation"},
@@ -84,6 +95,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadSite{"far", site_of(changed(kLidar, "1,2,3", "1,2,3e9")), "T_map_sensor.translation"},
         BadSite{"frame", changed(site_of(kLidar), "\"map\"", "\"\\n\""), "world_frame"}),
     [](const auto& bad) { return bad.param.name; });
+
+TEST(Site, RoomsMayLieFarApart) {
+  const TemporaryFolder folder;
+  const std::string far = changed(changed(kLidar, "c0", "c1"), "1,2,3", "901,402,3");
+  folder.put("site.json", site_of(kLidar + "," + far));
+  const auto site = read_site(folder.path() / "site.json");
+  ASSERT_TRUE(site) << site.error().message;
+  EXPECT_EQ(site->global_lidars.size(), 2U);
+}
 
 TEST(Hostile, AbsentFilesAndFoldersAreNamed) {
   const TemporaryFolder folder;

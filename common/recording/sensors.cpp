@@ -132,7 +132,9 @@ Result<Site> read_site(const std::filesystem::path& file) {
       return fail("{} is a {}; give an object {{...}}", where, (*list)[i].type_name());
     auto lidar = lidar_of(JsonFields((*list)[i], where));
     if (!lidar) return tl::unexpected(lidar.error());
-    if (!seen.insert(lidar->id).second) return fail("{}.id '{}' is used twice; rename one", where, lidar->id);
+    if (!seen.insert(ros_name(lidar->id)).second)
+      return fail("{}.id '{}' is used twice (- and _ are one in the names of topics); rename one", where,
+                  lidar->id);
     site.global_lidars.push_back(std::move(*lidar));
   }
   if (const Status extent = check_extent(name, site.global_lidars); !extent)

@@ -2,7 +2,8 @@
 // Sensor streams as ROS 2 names and lays them out; every sample is checked before a handler sees it, and one
 // that fails arrives as an error that names the field. Handlers run on the dispatcher's thread.
 //
-// Topics of sensor <id>: rt/<id>/depth/image_rect_raw, rt/<id>/depth/camera_info, rt/<id>/points, rt/<id>/imu.
+// Topics of sensor <id>: rt/<id>/depth/image_rect_raw, rt/<id>/depth/camera_info, rt/<id>/points, rt/<id>/imu; a
+// hyphen of the id is an underscore there (`ros_name`).
 #include <functional>
 #include <string>
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/ids.hpp"
 #include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
 #include "common/wire/sensors.hpp"
@@ -33,7 +34,7 @@ void report(const wire::LidarHealth& health, double rate_hz) {
     case wire::LidarState::silent:
       return log::warning(
           "{}: silent; is it running, and does it send rt/{}/depth/image_rect_raw in this domain?", health.id,
-          health.id);
+          ros_name(health.id));
     case wire::LidarState::malformed:
       return log::warning("{}: malformed: {}", health.id, health.last_error);
     case wire::LidarState::blind:

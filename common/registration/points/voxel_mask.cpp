@@ -39,8 +39,9 @@ VoxelMask VoxelMask::covering(const std::vector<Eigen::Vector3f>& points, double
 
 VoxelMask::VoxelMask(const std::vector<Eigen::Vector3f>& points, double reach_m, Margin margin) {
   const double cells = cells_of(box_of(points, everywhere()), reach_m);
-  if (cells <= kMostCells) return cover(points, everywhere(), reach_m, margin);
-  const std::vector<Region> regions = regions_of(points, 4 * std::max(reach_m, kLeastApart_m));
+  const std::vector<Region> regions = cells <= kMostCells
+                                          ? std::vector{everywhere()}
+                                          : regions_of(points, 4 * std::max(reach_m, kLeastApart_m));
   for (std::size_t k = 0; k < regions.size(); ++k)
     (k == 0 ? *this : beyond_.emplace_back()).cover(points, regions[k], reach_m, margin);
 }

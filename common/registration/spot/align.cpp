@@ -17,7 +17,9 @@ namespace liloc {
 namespace {
 
 // By hand.
-constexpr double kLargest_m = 500;  // a building; the smallest room is longer in millimetres; by hand
+// A building; the smallest room is longer in millimetres, and no longer than the second in centimetres. By
+// hand.
+constexpr double kLargest_m = 500, kLongestRoom_m = 2000;
 constexpr std::size_t kFewestPoints = 50, kMostDescribed = 12'000;
 // On three scenes of published pairs half and twice the samples find 2 to 4 % fewer of little overlap; of 150
 // sketched 1 to 2 % more are found, at 5 ms more; of 20 refined none more.
@@ -37,8 +39,11 @@ Status check(const AlignOptions& options) {
 Status in_metres(std::string_view name, const Cloud& cloud) {
   const double spans_m = extent_m(cloud);
   if (spans_m <= kLargest_m) return {};
+  const char* unit = spans_m < kLongestRoom_m       ? "centimetres or millimetres"
+                     : 1e-3 * spans_m <= kLargest_m ? "millimetres"
+                                                    : "another unit than metres";
   return fail("{} spans {:.4g} m, must be at most {} m: it looks like {}; scale it to metres", name, spans_m,
-              kLargest_m, 1e-3 * spans_m <= kLargest_m ? "millimetres" : "another unit than metres");
+              kLargest_m, unit);
 }
 
 /// Half of the points must lie where floats tell a tenth of a voxel apart.
@@ -144,6 +149,7 @@ Result<AlignResult> align_clouds(const Cloud& source, const Cloud& target, const
   AlignResult result;
   if (hypotheses->empty()) return result;
   const AlignHypothesis& best = hypotheses->front();
+  result.found = true;
   result.T_target_source = best.alignment.T_target_source;
   result.fitness = best.evidence.fitness;
   result.rmse_m = best.evidence.rmse_m;

@@ -176,8 +176,8 @@ std::string bytes_of(double value, bool big) {
 
 /// One PLY with a property and an element in front of what is wanted, as other programs write it.
 template <class T>
-std::string ply_of(const std::string& format, const std::string& type) {
-  const auto points = corner_points();
+std::string ply_of(const std::string& format, const std::string& type,
+                   const std::vector<Eigen::Vector3d>& points = corner_points()) {
   const bool ascii = format == "ascii", big = format == "binary_big_endian";
   std::string text = fmt::format(
       "ply\r\nformat {} 1.0\r\ncomment x\r\nobj_info num_cols 7\r\nelement camera 1\r\nproperty list uchar "
@@ -234,6 +234,36 @@ TEST_F(CommandLine, CloudsOfEveryCoordinateTypeAreRead) {
     for (const char* field : {"T_target_source", "fitness", "rmse_m"})
       EXPECT_EQ(got[field], wanted[field]) << name << " " << field;  // the same points: the same answer
   }
+}
+
+TEST_F(CommandLine, CloudsInTheCoordinatesOfASurveyAreAligned) {
+  const Eigen::Vector3d survey(691'608.25, 5'334'765.5, 520.125);
+  auto far = corner_points();
+  for (Eigen::Vector3d& p : far) p += survey;
+  ASSERT_TRUE(write_file(path("far.ply"), ply_of<double>("binary_little_endian", "double", far)));
+  ASSERT_TRUE(write_file(path("near.ply"), ply_of<double>("ascii", "double")));
+  const auto T = [&](const char* source, const char* target) {
+    const Outcome outcome = liloc(fmt::format("align --gravity --json {} {}", path(source), path(target)));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+    return nlohmann::json::parse(outcome.out, nullptr, false)["T_target_source"];
+  };
+  const auto there = T("near.ply", "far.ply"), here = T("far.ply", "far.ply");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double wanted = survey[static_cast<int>(axis)];
+    EXPECT_NEAR(there[axis][3].get<double>(), wanted, 0.05) << there;
+    // A turn of a microradian about a place so far off moves it by metres: where the cloud ends counts.
+    const Eigen::RowVector3d row(here[axis][0], here[axis][1], here[axis][2]);
+    EXPECT_NEAR(row.dot(survey) + here[axis][3].get<double>(), wanted, 0.05) << here;
+  }
+}
+
+TEST_F(CommandLine, CloudsInMillimetresAreNamedAsSuch) {
+  auto millimetres = corner_points();
+  for (Eigen::Vector3d& p : millimetres) p *= 1000;
+  ASSERT_TRUE(write_file(path("mm.ply"), ply_of<std::int16_t>("binary_big_endian", "short", millimetres)));
+  ASSERT_TRUE(write_file(path("m.ply"), ply_of<float>("ascii", "float")));
+  expect_complaint(liloc("align " + path("mm.ply") + " " + path("m.ply")), 1, "millimetres");
+  expect_complaint(liloc("align " + path("m.ply") + " " + path("mm.ply")), 1, "target spans 3020 m");
 }
 
 TEST_F(CommandLine, CloudsThatCannotBeMeantAreRefusedByFieldAndType) {

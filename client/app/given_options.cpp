@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-#include "common/base/ids.hpp"
+#include "common/base/ros_name.hpp"
 #include "common/command/text.hpp"
 #include "common/geometry/pose.hpp"
 #include "common/wire/participant.hpp"

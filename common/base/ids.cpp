@@ -26,9 +26,4 @@ Result<std::string> valid_id(std::string_view id, std::string_view what) {
   return std::string(id);
 }
 
-std::string ros_name(std::string id) {
-  std::ranges::replace(id, '-', '_');
-  return id;
-}
-
 }  // namespace liloc

@@ -10,7 +10,4 @@ namespace liloc {
 /// [A-Za-z0-9_-]. `what` names the field in the error.
 [[nodiscard]] Result<std::string> valid_id(std::string_view id, std::string_view what);
 
-/// An id in the names of topics, which have no hyphens: they become underscores.
-[[nodiscard]] std::string ros_name(std::string id);
-
 }  // namespace liloc

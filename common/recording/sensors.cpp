@@ -7,6 +7,7 @@
 
 #include "common/base/ids.hpp"
 #include "common/base/quantile.hpp"
+#include "common/base/ros_name.hpp"
 #include "common/geometry/regions.hpp"
 #include "common/recording/files.hpp"
 #include "common/recording/json_fields.hpp"

@@ -2,8 +2,7 @@
 // Sensor streams as ROS 2 names and lays them out; every sample is checked before a handler sees it, and one
 // that fails arrives as an error that names the field. Handlers run on the dispatcher's thread.
 //
-// Topics of sensor <id>: rt/<id>/depth/image_rect_raw, rt/<id>/depth/camera_info, rt/<id>/points, rt/<id>/imu; a
-// hyphen of the id is an underscore there (`ros_name`).
+// Topics of sensor <id>: rt/<id>/depth/image_rect_raw, rt/<id>/depth/camera_info, rt/<id>/points, rt/<id>/imu.
 #include <functional>
 #include <string>
 

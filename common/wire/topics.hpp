@@ -2,7 +2,7 @@
 // Private to the room: names of topics and partitions.
 #include <string>
 
-#include "common/base/ids.hpp"
+#include "common/base/ros_name.hpp"
 
 namespace liloc::wire {
 
@@ -16,7 +16,7 @@ inline std::string client_partition(const std::string& client_id) {
   return kClientPrefix + client_id;
 }
 
-/// ROS 2 puts rt/ before a topic's name.
+/// ROS 2 puts rt/ before a topic's name; a hyphen of the id is an underscore there.
 inline std::string depth_topic(const std::string& id) {
   return "rt/" + ros_name(id) + "/depth/image_rect_raw";
 }

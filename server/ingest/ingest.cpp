@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/base/ids.hpp"
 #include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
+#include "common/base/ros_name.hpp"
 #include "common/wire/sensors.hpp"
 #include "server/ingest/lidar_monitor.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "common/base/ids.hpp"
+#include "common/base/ros_name.hpp"
 #include "common/command/text.hpp"
 #include "server/tools/complaints.hpp"
 

@@ -23,10 +23,5 @@ TEST(Ids, AHostileIdIsMaskedInTheError) {
   EXPECT_THAT(valid_id("\x1b[31m", "id").error().message, testing::Not(testing::HasSubstr("\x1b")));
 }
 
-TEST(Ids, NamesOfTopicsHaveNoHyphens) {
-  EXPECT_EQ(ros_name("robot-7_b"), "robot_7_b");
-  EXPECT_EQ(ros_name("ceiling0"), "ceiling0");
-}
-
 }  // namespace
 }  // namespace liloc

@@ -36,6 +36,7 @@ constexpr double kReach_m = 10;  // of a LiDAR, sideways
 /// The grids of a room cover its extent: a box of these walls takes some gigabyte. Rooms that lie far apart
 /// have grids of their own.
 constexpr double kLargest_m2 = 10'000;  // over twice what 64 LiDARs, as many as a status holds, can cover
+constexpr double kHighest_m = 100;      // above each other: a high building
 constexpr double kFarthest_m = 1000;    // a float of the map tells 0.1 mm there; no site is wider than 2 km
 
 /// What a LiDAR covers, at most.
@@ -79,6 +80,15 @@ Status check_extent(const std::string& file, const std::vector<GlobalLidar>& lid
         "most "
         "{:.0f} m: give metres, or make two sites",
         file, far, lidars[far].id, away_m, kFarthest_m);
+  const auto [lowest, highest] = std::ranges::minmax_element(
+      lidars, {}, [](const GlobalLidar& l) { return l.T_map_sensor.translation().z(); });
+  const double rise_m = highest->T_map_sensor.translation().z() - lowest->T_map_sensor.translation().z();
+  if (rise_m > kHighest_m)
+    return fail(
+        "{}: global_lidars[{}].T_map_sensor.translation: {} hangs {:.0f} m above {}, must be at most {:.0f} m: "
+        "give "
+        "metres, or make two sites",
+        file, highest - lidars.begin(), highest->id, rise_m, lowest->id, kHighest_m);
   std::vector<Region> boxes;
   for (const GlobalLidar& lidar : lidars) boxes.push_back(around(lidar));
   for (const Region& region : merged(boxes, kFarApart_m)) {

@@ -1,16 +1,11 @@
 // site.json and device.json, both ways.
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
 #include <set>
-#include <utility>
 
 #include "common/base/ids.hpp"
-#include "common/base/quantile.hpp"
 #include "common/base/ros_name.hpp"
-#include "common/geometry/regions.hpp"
 #include "common/recording/files.hpp"
 #include "common/recording/json_fields.hpp"
+#include "common/recording/site_extent.hpp"
 #include "common/recording/writer.hpp"
 
 namespace liloc {
@@ -30,78 +25,6 @@ Result<GlobalLidar> lidar_of(const JsonFields& fields) {
   const auto T_map_sensor = fields.pose("T_map_sensor");
   if (!T_map_sensor) return tl::unexpected(T_map_sensor.error());
   return GlobalLidar{*id, *camera, *rate_hz, *T_map_sensor};
-}
-
-constexpr double kReach_m = 10;  // of a LiDAR, sideways
-/// The grids of a room cover its extent: a box of these walls takes some gigabyte. Rooms that lie far apart
-/// have grids of their own.
-constexpr double kLargest_m2 = 10'000;  // over twice what 64 LiDARs, as many as a status holds, can cover
-constexpr double kHighest_m = 100;      // above each other: a high building
-constexpr double kFarthest_m = 1000;    // a float of the map tells 0.1 mm there; no site is wider than 2 km
-
-/// What a LiDAR covers, at most.
-Region around(const GlobalLidar& lidar) {
-  const Eigen::Vector2d place = lidar.T_map_sensor.translation().head<2>();
-  return {place.array() - kReach_m, place.array() + kReach_m};
-}
-
-/// Of the LiDARs' places; of two the first.
-Eigen::Vector2d middle_of(const std::vector<GlobalLidar>& lidars) {
-  std::array<std::vector<double>, 2> along;
-  for (const GlobalLidar& lidar : lidars)
-    for (int axis = 0; axis < 2; ++axis)
-      along[static_cast<std::size_t>(axis)].push_back(lidar.T_map_sensor.translation()[axis]);
-  return {quantile(along[0], 0.49), quantile(along[1], 0.49)};
-}
-
-/// The one that hangs farthest from the middle of those in the region, and how far.
-std::pair<std::size_t, double> farthest_in(const Region& region, const std::vector<GlobalLidar>& lidars) {
-  std::vector<GlobalLidar> members;
-  std::vector<std::size_t> numbers;
-  for (std::size_t i = 0; i < lidars.size(); ++i)
-    if (region.contains(lidars[i].T_map_sensor.translation().head<2>())) {
-      members.push_back(lidars[i]);
-      numbers.push_back(i);
-    }
-  const Eigen::Vector2d middle = middle_of(members);
-  const auto away = [&](const GlobalLidar& l) {
-    return (l.T_map_sensor.translation().head<2>() - middle).norm();
-  };
-  const auto far = std::ranges::max_element(members, {}, away);
-  return {numbers[static_cast<std::size_t>(far - members.begin())], away(*far)};
-}
-
-/// Names the LiDAR that hangs farthest from the middle one.
-Status check_extent(const std::string& file, const std::vector<GlobalLidar>& lidars) {
-  const auto [far, away_m] = farthest_in(everywhere(), lidars);
-  if (away_m > kFarthest_m)
-    return fail(
-        "{}: global_lidars[{}].T_map_sensor.translation: {} hangs {:.0f} m from the middle one, must be at "
-        "most "
-        "{:.0f} m: give metres, or make two sites",
-        file, far, lidars[far].id, away_m, kFarthest_m);
-  const auto [lowest, highest] = std::ranges::minmax_element(
-      lidars, {}, [](const GlobalLidar& l) { return l.T_map_sensor.translation().z(); });
-  const double rise_m = highest->T_map_sensor.translation().z() - lowest->T_map_sensor.translation().z();
-  if (rise_m > kHighest_m)
-    return fail(
-        "{}: global_lidars[{}].T_map_sensor.translation: {} hangs {:.0f} m above {}, must be at most {:.0f} m: "
-        "give "
-        "metres, or make two sites",
-        file, highest - lidars.begin(), highest->id, rise_m, lowest->id, kHighest_m);
-  std::vector<Region> boxes;
-  for (const GlobalLidar& lidar : lidars) boxes.push_back(around(lidar));
-  for (const Region& region : merged(boxes, kFarApart_m)) {
-    if (region.volume() <= kLargest_m2) continue;
-    const auto [edge, off_m] = farthest_in(region, lidars);
-    return fail(
-        "{}: global_lidars[{}].T_map_sensor.translation: {} hangs {:.0f} m from the middle one; rooms that "
-        "hang "
-        "together span at most {:.0f} m2 along the map's axes, with {:.0f} m around, these {:.0f} x {:.0f} m: "
-        "give metres, or make two sites",
-        file, edge, lidars[edge].id, off_m, kLargest_m2, kReach_m, region.sizes().x(), region.sizes().y());
-  }
-  return {};
 }
 
 Status read_inertial(const JsonFields& fields, DeviceInfo& device) {

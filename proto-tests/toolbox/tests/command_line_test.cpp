@@ -319,6 +319,15 @@ TEST_F(CommandLine, ARecordingWithoutASoundDeviceFrameFails) {
                    "none of its 2 device frames could be used; the first: ");
 }
 
+TEST_F(CommandLine, ARecordingWithoutASoundCeilingFrameFails) {
+  const fs::path rec = folder_.path() / "rec";
+  replay::write_small_recording(rec);
+  for (const auto& frame : fs::directory_iterator(rec / "global/ceiling0/depth"))
+    fs::resize_file(frame.path(), 60);
+  expect_complaint(liloc("replay " + rec.string() + " --lockstep --out " + path("out")), 1,
+                   "none of its 2 ceiling frames could be used; the first: ");
+}
+
 TEST_F(CommandLine, CloudsThatAreTooThinAreNamedWithTheRemedy) {
   std::string room = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1000\nHEIGHT 1\nPOINTS 1000\nDATA ascii\n";
   for (int i = 0; i < 1000; ++i)

@@ -47,7 +47,7 @@ FrameContent content_of(const Returns& seen, std::size_t pixels) {
       count;
   content.range_m = static_cast<double>(median(seen.depths_m));
   content.far_m = static_cast<double>(quantile(seen.depths_m, 0.95));
-  content.drop_m = static_cast<double>(quantile(seen.drops_m, 0.95));
+  content.drop_m = static_cast<double>(quantile(seen.drops_m, 0.98));
   return content;
 }
 

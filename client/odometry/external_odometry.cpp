@@ -9,7 +9,7 @@ namespace liloc {
 namespace {
 
 // In m/s, rad/s: of a pose beyond the samples; by hand.
-// Of samples: three jumps among a dozen are no hiccup, and a minute at 50 Hz of none forgets many; by hand.
+// Three jumps among a dozen samples are no hiccup; forty that go on forget any number; by hand.
 constexpr int kJump = 4, kManyJumps = 10, kMostJumps = 40;
 constexpr double kGuessedSpeedError = 0.3, kGuessedTurnError = 0.3;
 

@@ -8,8 +8,8 @@
 #include "common/base/ros_name.hpp"
 #include "common/command/text.hpp"
 #include "common/geometry/pose.hpp"
-#include "common/wire/participant.hpp"
-#include "common/wire/sensors.hpp"
+#include "common/wire/dds/participant.hpp"
+#include "common/wire/sensors/sensors.hpp"
 
 namespace liloc {
 namespace {

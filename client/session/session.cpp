@@ -306,7 +306,7 @@ bool Session::add_reply(const SpotReply& reply) {
   if (!impl_->follows(reply)) return false;
   if (impl_->clock.learn(reply, now())) {
     impl_->report.count(&SessionStats::clock_jumps);
-    log::limited(jump_lines,
+    log::limited(impl_->jump_lines,
                  "{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
                  impl_->id());
   }

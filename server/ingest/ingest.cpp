@@ -6,6 +6,7 @@
 #include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
 #include "common/base/ros_name.hpp"
+#include "common/base/stamp_watch.hpp"
 #include "common/wire/sensors/sensors.hpp"
 #include "server/ingest/lidar_monitor.hpp"
 
@@ -107,6 +108,8 @@ Status Ingest::subscribe(wire::Dispatcher& dispatcher, std::size_t index) {
 
 void Ingest::take(std::size_t index, StampNs stamp_ns, const FrameContent& content,
                   const std::function<Status(StampNs)>& add) {
+  if (const Status unit = check_unit_by(wall_clock_ns(), stamp_ns, "depth"); !unit)
+    return drop(index, unit.error().message);
   const auto now = Clock::now();
   std::optional<StampNs> site_stamp_ns;
   {

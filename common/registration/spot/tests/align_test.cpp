@@ -139,8 +139,9 @@ TEST(Align, CloudsInMillimetresAreNamedAsSuch) {
   const Cloud good = two_walls_and_a_box(1);
   Cloud millimetres = good;
   for (Eigen::Vector3f& p : millimetres.points) p *= 1000;
-  for (const auto& [source, target, name] :
-       {std::tuple{&millimetres, &good, "source"}, {&good, &millimetres, "target"}}) {
+  const std::tuple<const Cloud*, const Cloud*, const char*> cases[] = {{&millimetres, &good, "source"},
+                                                                       {&good, &millimetres, "target"}};
+  for (const auto& [source, target, name] : cases) {
     const auto result = align_clouds(*source, *target, {});
     ASSERT_FALSE(result);
     EXPECT_NE(result.error().message.find(name), std::string::npos) << result.error().message;

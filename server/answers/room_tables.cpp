@@ -69,14 +69,14 @@ Frames read_frames(ArchiveIn& in, const Parts& surfaces, const SnapshotOptions& 
   for (std::size_t left = in.count(0, kMostLidars * kMostMoments); left > 0 && in.status(); --left) {
     const std::size_t part = number_below(in, surfaces.size());
     if (!in.status()) break;
-    DepthImage still, moving;
+    Layers layers;
     const GlobalLidar& lidar = surfaces[part]->lidar();
-    fields(in, still, lidar.camera);
-    fields(in, moving, lidar.camera);
-    in.require(!still.units.empty(), "a frame without an image");
+    fields(in, layers.still, lidar.camera);
+    fields(in, layers.moving, lidar.camera);
+    fields(in, layers.gone, lidar.camera);
+    in.require(!layers.still.units.empty(), "a frame without an image");
     if (in.status())
-      all.push_back(std::make_shared<const LidarFrame>(std::move(still), std::move(moving), surfaces[part],
-                                                       lidar, options));
+      all.push_back(std::make_shared<const LidarFrame>(std::move(layers), surfaces[part], lidar, options));
   }
   return all;
 }
@@ -113,8 +113,9 @@ void RoomsOut::write(ArchiveOut& out) {
   out.count(frames.size(), kMostLidars * kMostMoments);
   for (const LidarFrame* frame : frames) {
     out.number(number_in(surfaces, frame->surfaces().get()));
-    fields(out, frame->still(), frame->lidar().camera);
-    fields(out, frame->moving(), frame->lidar().camera);
+    fields(out, frame->layers().still, frame->lidar().camera);
+    fields(out, frame->layers().moving, frame->lidar().camera);
+    fields(out, frame->layers().gone, frame->lidar().camera);
   }
   out.count(snapshots_.size(), kMostMoments);
   for (const Snapshot* snapshot : snapshots_) {

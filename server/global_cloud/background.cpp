@@ -8,7 +8,7 @@ namespace {
 
 // Frames in a surface that speaks for its neighbours, and for itself when something nearer hides it; by hand.
 constexpr int kProven = 4;
-constexpr int kCompany = 2;  // neighbours that move as well, or it is noise; by hand, DECISIONS.md
+constexpr int kCompany = 2;  // neighbours that move or are gone as well, or it is noise; by hand, DECISIONS.md
 
 constexpr float kHoldShare = 0.003F;  // of the depth; by hand, DECISIONS.md
 // Times as many in a mean make it worth showing anew; by hand, DECISIONS.md.
@@ -145,15 +145,30 @@ Layers Background::learn(const DepthImage& image) {
   return separated(image);
 }
 
+template <class Alike>
+bool Background::in_company(std::size_t i, const Alike& alike) const {
+  int count = 0;
+  for_each_around(i, [&](std::size_t j) { count += alike(j) ? 1 : 0; });
+  return count >= kCompany;
+}
+
+bool Background::gone(std::size_t i, float units) const {
+  const Pixel& pixel = pixels_[i];
+  if (pixel.shown == 0) return false;
+  if (units > 0) return units > pixel.shown && units - pixel.shown > tolerance_of(units);
+  return pixel.surface == 0 || surprisal_of_missing(pixel) >= static_cast<float>(options_.forget_surprisal);
+}
+
 Layers Background::separated(const DepthImage& image) const {
-  Layers layers{image, {image.stamp_ns, width_, height_, std::vector<std::uint16_t>(pixels_.size(), 0)}};
+  const DepthImage none{image.stamp_ns, width_, height_, std::vector<std::uint16_t>(pixels_.size(), 0)};
+  Layers layers{image, none, none};
+  const auto is_gone = [&](std::size_t j) { return gone(j, image.units[j]); };
+  const auto is_nearer = [&](std::size_t j) { return kinds_[j] == Kind::nearer; };
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    if (is_gone(i) && in_company(i, is_gone)) layers.gone.units[i] = pixels_[i].shown;
     if (kinds_[i] == Kind::nothing || kinds_[i] == Kind::still) continue;
     layers.still.units[i] = 0;
-    if (kinds_[i] == Kind::farther) continue;
-    int alike = 0;
-    for_each_around(i, [&](std::size_t j) { alike += kinds_[j] == Kind::nearer; });
-    if (alike < kCompany) continue;
+    if (kinds_[i] == Kind::farther || !in_company(i, is_nearer)) continue;
     layers.moving.units[i] = image.units[i];
     for_each_around(i, [&](std::size_t j) { layers.still.units[j] = 0; });
   }

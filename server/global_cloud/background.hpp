@@ -4,6 +4,7 @@
 
 #include "common/geometry/camera.hpp"
 #include "server/global_cloud/depth_noise.hpp"
+#include "server/global_cloud/layers.hpp"
 
 namespace liloc {
 
@@ -22,12 +23,6 @@ struct BackgroundOptions {
 };
 
 enum class Change { none, small, large };
-
-/// A frame taken apart. Where somebody's outline mixes with what is behind, and where a pixel stands alone
-/// with what it says, it is in neither (0).
-struct Layers {
-  DepthImage still, moving;
-};
 
 /// The room before one ceiling LiDAR without what moves. The LiDAR stands still, so each pixel has a history of
 /// its own: a return nearer than its surface, or where there was none, belongs to something that came by, until
@@ -72,6 +67,11 @@ class Background {
   [[nodiscard]] Kind learn(std::size_t i, float units, std::uint32_t now_ms);
   [[nodiscard]] bool continues_a_neighbour(std::size_t i, float units) const;
   [[nodiscard]] Layers separated(const DepthImage& image) const;
+  /// Whether a return of so many units (0: none) contradicts the surface that pixel i showed last.
+  [[nodiscard]] bool gone(std::size_t i, float units) const;
+  /// Whether enough of pixel i's neighbours are alike for that to be no noise.
+  template <class Alike>
+  [[nodiscard]] bool in_company(std::size_t i, const Alike& alike) const;
   [[nodiscard]] float tolerance_of(float units) const;
   template <class Visit>
   void for_each_around(std::size_t i, const Visit& visit) const;

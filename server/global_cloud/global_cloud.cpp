@@ -101,23 +101,20 @@ GlobalCloud::Frame GlobalCloud::watched(std::size_t lidar, DepthImage image) {
   const GlobalLidar& info = site_.global_lidars[lidar];
   Watch& watch = watches_[lidar];
   watch.late = 0;
-  DepthImage moving;
+  Layers layers{std::move(image), {}, {}};
   if (!options_.drop_moving) {
-    watch.surfaces = std::make_shared<const LidarSurfaces>(image, info, options_.snapshot);
+    watch.surfaces = std::make_shared<const LidarSurfaces>(layers.still, info, options_.snapshot);
   } else {
-    Layers layers = watch.background.learn(image);
-    image = std::move(layers.still);
-    moving = std::move(layers.moving);
+    layers = watch.background.learn(layers.still);
     const Change change = watch.background.change();
-    const int epoch = epoch_after(change, image.stamp_ns);
+    const int epoch = epoch_after(change, layers.still.stamp_ns);
     if (!watch.surfaces || change == Change::large || watch.epoch != epoch) {
       watch.epoch = epoch;
       watch.surfaces =
           std::make_shared<const LidarSurfaces>(watch.background.surfaces(), info, options_.snapshot);
     }
   }
-  return std::make_shared<const LidarFrame>(std::move(image), std::move(moving), watch.surfaces, info,
-                                            options_.snapshot);
+  return std::make_shared<const LidarFrame>(std::move(layers), watch.surfaces, info, options_.snapshot);
 }
 
 std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame>& frames) {

@@ -11,7 +11,7 @@
 namespace liloc {
 namespace {
 
-constexpr double kMovingVoxel_m = 0.15;  // by hand
+constexpr double kMovingVoxel_m = 0.15, kGoneVoxel_m = 0.05;  // by hand
 
 SightView view_of(const DepthImage& image, const GlobalLidar& lidar, const SnapshotOptions& options) {
   return SightView::from_depth(image, lidar.camera, lidar.T_map_sensor.inverse(), options.view_factor,
@@ -38,27 +38,31 @@ SightView LidarSurfaces::view() const {
   return view_of(image_, lidar_, options_);
 }
 
-LidarFrame::LidarFrame(DepthImage still, DepthImage moving, std::shared_ptr<const LidarSurfaces> surfaces,
-                       const GlobalLidar& lidar, const SnapshotOptions& options)
-    : still_(std::move(still)),
-      moving_(std::move(moving)),
-      surfaces_(std::move(surfaces)),
-      lidar_(lidar),
-      options_(options) {}
+LidarFrame::LidarFrame(Layers layers, std::shared_ptr<const LidarSurfaces> surfaces, const GlobalLidar& lidar,
+                       const SnapshotOptions& options)
+    : layers_(std::move(layers)), surfaces_(std::move(surfaces)), lidar_(lidar), options_(options) {}
 
 const SightView& LidarFrame::view() const {
-  std::call_once(once_, [this] { view_ = view_of(still_, lidar_, options_); });
+  std::call_once(once_, [this] { view_ = view_of(layers_.still, lidar_, options_); });
   return view_;
 }
 
+Cloud LidarFrame::thinned(const DepthImage& image, double voxel_m) const {
+  if (image.units.empty()) return {};
+  const auto cloud_sensor = depth_to_cloud(image, lidar_.camera, options_.depth);
+  if (cloud_sensor) return transformed(lidar_.T_map_sensor, voxel_downsample(*cloud_sensor, voxel_m));
+  log::error("{}: {}", lidar_.id, cloud_sensor.error().message);
+  return {};
+}
+
 const Cloud& LidarFrame::moving_map() const {
-  std::call_once(moving_once_, [this] {
-    if (moving_.units.empty()) return;
-    const auto cloud_sensor = depth_to_cloud(moving_, lidar_.camera, options_.depth);
-    if (!cloud_sensor) return log::error("{}: {}", lidar_.id, cloud_sensor.error().message);
-    moving_map_ = transformed(lidar_.T_map_sensor, voxel_downsample(*cloud_sensor, kMovingVoxel_m));
-  });
+  std::call_once(moving_once_, [this] { moving_map_ = thinned(layers_.moving, kMovingVoxel_m); });
   return moving_map_;
+}
+
+const Cloud& LidarFrame::gone_map() const {
+  std::call_once(gone_once_, [this] { gone_map_ = thinned(layers_.gone, kGoneVoxel_m); });
+  return gone_map_;
 }
 
 const std::shared_ptr<const Surfaces>& StitchedRoom::surfaces() const {
@@ -111,12 +115,14 @@ StampNs Snapshot::stamp_near(StampNs stamp_ns) const {
 const Target& Snapshot::target() const {
   std::call_once(once_, [this] {
     target_.surfaces = room_->surfaces();
-    Cloud moving_map;
+    Cloud moving_map, gone_map;
     for (const auto& frame : frames_) {
       target_.views.push_back(frame->view());
       append(moving_map, frame->moving_map());
+      append(gone_map, frame->gone_map());
     }
-    target_.dynamic = std::make_shared<const DynamicRegions>(target_.surfaces, target_.views, moving_map);
+    target_.dynamic =
+        std::make_shared<const DynamicRegions>(target_.surfaces, target_.views, moving_map, gone_map);
     has_target_ = true;
   });
   return target_;

@@ -10,6 +10,7 @@
 #include "common/geometry/depth.hpp"
 #include "common/registration/search/feature_search.hpp"
 #include "common/registration/target/target.hpp"
+#include "server/global_cloud/layers.hpp"
 
 namespace liloc {
 
@@ -47,28 +48,30 @@ class LidarSurfaces {
 /// moves.
 class LidarFrame {
  public:
-  /// `moving`: the pixels that `still` lacks because something moves there; may be empty.
-  LidarFrame(DepthImage still, DepthImage moving, std::shared_ptr<const LidarSurfaces> surfaces,
-             const GlobalLidar& lidar, const SnapshotOptions& options);
+  LidarFrame(Layers layers, std::shared_ptr<const LidarSurfaces> surfaces, const GlobalLidar& lidar,
+             const SnapshotOptions& options);
 
-  [[nodiscard]] StampNs stamp_ns() const { return still_.stamp_ns; }
+  [[nodiscard]] StampNs stamp_ns() const { return layers_.still.stamp_ns; }
   [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
   [[nodiscard]] const std::shared_ptr<const LidarSurfaces>& surfaces() const { return surfaces_; }
-  /// The images it was made of.
-  [[nodiscard]] const DepthImage& still() const { return still_; }
-  [[nodiscard]] const DepthImage& moving() const { return moving_; }
+  /// What it was made of.
+  [[nodiscard]] const Layers& layers() const { return layers_; }
   [[nodiscard]] const SightView& view() const;
   /// What moves in this frame, thinned.
   [[nodiscard]] const Cloud& moving_map() const;
+  /// Surfaces that were there until just now, thinned.
+  [[nodiscard]] const Cloud& gone_map() const;
 
  private:
-  const DepthImage still_, moving_;
+  [[nodiscard]] Cloud thinned(const DepthImage& image, double voxel_m) const;
+
+  const Layers layers_;
   const std::shared_ptr<const LidarSurfaces> surfaces_;
   const GlobalLidar& lidar_;
   const SnapshotOptions options_;
-  mutable std::once_flag once_, moving_once_;
+  mutable std::once_flag once_, moving_once_, gone_once_;
   mutable SightView view_;
-  mutable Cloud moving_map_;
+  mutable Cloud moving_map_, gone_map_;
 };
 
 /// The GPC stitched from the surfaces of all LiDARs, with its indices and descriptors, each built by its first

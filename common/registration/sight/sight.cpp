@@ -14,6 +14,10 @@ constexpr std::size_t kAtOnce = 512;  // points whose words are kept before they
 
 constexpr std::uint16_t kNoDepth = 65535;  // beyond any depth
 
+// In voxels: how far a thinned point covers its surface, and how far from it a point of the other cloud may lie
+// that is the same surface's. Between 0.6 and 2, DECISIONS.md.
+constexpr double kCovers = 0.6, kEdge = 1.2;
+
 /// Takes a row of depths into the nearest and farthest of each column; 0 and what is too far are left out.
 LILOC_WIDEST void take_row(const std::uint16_t* units, std::uint16_t farthest, std::size_t count,
                            std::uint16_t* near, std::uint16_t* far) {
@@ -63,7 +67,8 @@ SightView SightView::from_depth(const DepthImage& image, const Camera& camera, c
                           most = *std::max_element(&far[u], far.data() + end);
       if (most > 0)
         bands[u / static_cast<std::size_t>(factor)] = {static_cast<float>(least) * scale,
-                                                       static_cast<float>(most) * scale};
+                                                       static_cast<float>(most) * scale,
+                                                       static_cast<float>(least) * scale};
     }
   }
   view.widen();
@@ -71,26 +76,33 @@ SightView SightView::from_depth(const DepthImage& image, const Camera& camera, c
   return view;
 }
 
+template <class Visit>
+void SightView::for_each_pixel_near(const Eigen::Vector3f& p, float reach_m, const Visit& visit) {
+  const float u = p.x() / p.z() * fx_ + cx_, v = p.y() / p.z() * fy_ + cy_;
+  const float reach_u = reach_m / p.z() * fx_, reach_v = reach_m / p.z() * fy_;
+  const int u0 = std::max(0, static_cast<int>(std::floor(u - reach_u)));
+  const int u1 = std::min(width_ - 1, static_cast<int>(std::floor(u + reach_u)));
+  const int v0 = std::max(0, static_cast<int>(std::floor(v - reach_v)));
+  const int v1 = std::min(height_ - 1, static_cast<int>(std::floor(v + reach_v)));
+  for (int y = v0; y <= v1; ++y)
+    for (int x = u0; x <= u1; ++x)
+      visit(&bands_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                    static_cast<std::size_t>(x)]);
+}
+
 SightView SightView::from_cloud(const Cloud& cloud_sensor, const Camera& camera, double voxel_size_m,
                                 int width) {
   SightView view;
   view.prepare(shrunk(camera, std::max(1, (camera.width + width - 1) / width)));
-  const auto half = static_cast<float>(0.6 * voxel_size_m);
   for (const Eigen::Vector3f& p : cloud_sensor.points) {
     if (p.z() < kNearest) continue;
-    const float u = p.x() / p.z() * view.fx_ + view.cx_, v = p.y() / p.z() * view.fy_ + view.cy_;
-    const float reach_u = half / p.z() * view.fx_, reach_v = half / p.z() * view.fy_;
-    const int u0 = std::max(0, static_cast<int>(std::floor(u - reach_u)));
-    const int u1 = std::min(view.width_ - 1, static_cast<int>(std::floor(u + reach_u)));
-    const int v0 = std::max(0, static_cast<int>(std::floor(v - reach_v)));
-    const int v1 = std::min(view.height_ - 1, static_cast<int>(std::floor(v + reach_v)));
-    for (int y = v0; y <= v1; ++y)
-      for (int x = u0; x <= u1; ++x) {
-        Band& band = view.bands_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width_) +
-                                 static_cast<std::size_t>(x)];
-        band.near = band.far == 0 ? p.z() : std::min(band.near, p.z());
-        band.far = std::max(band.far, p.z());
-      }
+    const float z = p.z();
+    view.for_each_pixel_near(p, static_cast<float>(kCovers * voxel_size_m), [z](Band* band) {
+      band->near = band->far == 0 ? z : std::min(band->near, z);
+      band->far = std::max(band->far, z);
+    });
+    view.for_each_pixel_near(p, static_cast<float>(kEdge * voxel_size_m),
+                             [z](Band* band) { band->edge = band->edge == 0 ? z : std::min(band->edge, z); });
   }
   for (const Band& band : view.bands_) view.farthest_ = std::max(view.farthest_, band.far);
   return view;
@@ -153,6 +165,11 @@ void SightView::count_through(const PointRun& points_world, float tolerance_m, c
   if (before != nullptr) add(*before, -1);
 }
 
+void SightView::look_at_all(const PointRun& points_world, const PointRun& normals_world, float tolerance_m,
+                            std::int32_t* words) const {
+  look_at(pinhole(T_sensor_world_), bands_.data(), points_world, normals_world, tolerance_m, words);
+}
+
 std::array<HalfSpace, 6> SightView::bounds(const Eigen::Isometry3f& T_sensor_points, float tolerance_m) const {
   // Past the farthest surface, and what a point may lie behind it (see `compare`), nothing is seen.
   const float end = (farthest_ + tolerance_m) / 0.99F;
@@ -190,6 +207,7 @@ void SightView::widen() {
     if (other.far == 0 || band.far == 0) return;
     band.near = std::min(band.near, other.near);
     band.far = std::max(band.far, other.far);
+    band.edge = band.near;
   };
   for (int v = 0; v < height_; ++v)
     for (int u = 0; u < width_; ++u) {

@@ -14,7 +14,7 @@ namespace liloc {
 
 /// What a line of sight says of a point.
 enum class Sight : std::uint8_t {
-  unseen,    ///< outside the view, or nothing was measured there
+  unseen,    ///< outside the view, or nothing was measured there, or past the edge of something nearer
   agrees,    ///< a surface was measured at the point
   conflict,  ///< the sensor looked through the point: something there would have been seen
   behind     ///< hidden behind a measured surface
@@ -29,7 +29,7 @@ class SightView {
   static SightView from_depth(const DepthImage& image, const Camera& camera, const Pose& T_sensor_world,
                               int factor, double max_range_m);
   /// Rebuilds the view of a device from its voxelized cloud (sensor frame): each voxel covers the pixels that
-  /// its size covers. Pixels without a point stay unseen.
+  /// its size covers, and past a voxel's edge nothing is looked through. Pixels without a point stay unseen.
   static SightView from_cloud(const Cloud& cloud_sensor, const Camera& camera, double voxel_size_m, int width);
 
   /// `p` in the world frame of the view; `tolerance_m` for agreeing, twice that for a conflict.
@@ -63,6 +63,10 @@ class SightView {
 
   /// Raises each point's `Word` to what `look` says of it; `points` in the world frame of the view.
   void look_at_all(const PointRun& points_world, float tolerance_m, std::int32_t* words) const;
+  /// The same of points on surfaces with these normals (world frame, zero where unknown): less is looked
+  /// through where a line of sight grazes them, see `look_at`.
+  void look_at_all(const PointRun& points_world, const PointRun& normals_world, float tolerance_m,
+                   std::int32_t* words) const;
 
   /// Six half spaces of the points' frame: no ball that misses one of them holds a point that `tally` counts.
   [[nodiscard]] std::array<HalfSpace, 6> bounds(const Eigen::Isometry3f& T_sensor_points,
@@ -91,13 +95,16 @@ class SightView {
   [[nodiscard]] static Sight compare(const Band& band, float z, float tolerance_m) {
     if (band.far == 0) return Sight::unseen;
     const float slack = tolerance_m + 0.01F * z;
-    if (z < band.near - slack) return z < band.near - 2 * slack ? Sight::conflict : Sight::agrees;
-    return z <= band.near + slack || (z >= band.far - slack && z <= band.far + slack) ? Sight::agrees
-                                                                                      : Sight::behind;
+    if (z < band.edge - 2 * slack) return Sight::conflict;
+    const bool at_near = z >= band.near - 2 * slack && z <= band.near + slack,
+               at_far = z >= band.far - slack && z <= band.far + slack;
+    return at_near || at_far ? Sight::agrees : z < band.near ? Sight::unseen : Sight::behind;
   }
   void prepare(const Camera& small);
   [[nodiscard]] Pinhole pinhole(const Eigen::Isometry3f& T_sensor_points) const;
   void widen();  ///< takes in the bands of the four neighbours
+  template <class Visit>
+  void for_each_pixel_near(const Eigen::Vector3f& p_sensor, float reach_m, const Visit& visit);
 
   Eigen::Isometry3f T_sensor_world_ = Eigen::Isometry3f::Identity();
   int width_ = 0, height_ = 0;

@@ -4,10 +4,14 @@
 
 namespace liloc {
 
-LILOC_WIDE void look_at(const Pinhole& camera, const DepthBand* bands, const PointRun& points,
-                        float tolerance_m, std::int32_t* words) {
+namespace {
+
+/// `normals`: of as many points; not read unless kNormals.
+template <bool kNormals>
+[[gnu::always_inline]] inline void look(const Pinhole& camera, const DepthBand* bands, const PointRun& points,
+                                        const PointRun& normals, float tolerance_m, std::int32_t* words) {
   const Pinhole c = camera;  // a copy, which stores to `words` cannot change: else nothing is vectorized
-  const float *x = points.x, *y = points.y, *z = points.z;
+  const float *x = points.x, *y = points.y, *z = points.z, *nx = normals.x, *ny = normals.y, *nz = normals.z;
   const std::size_t count = points.count;
   const auto row = static_cast<std::uint32_t>(c.width), none = static_cast<std::uint32_t>(c.none);
 #pragma omp simd
@@ -21,14 +25,35 @@ LILOC_WIDE void look_at(const Pinhole& camera, const DepthBand* bands, const Poi
     const std::uint32_t inner = static_cast<std::uint32_t>(static_cast<std::int32_t>(v)) * row +
                                 static_cast<std::uint32_t>(static_cast<std::int32_t>(u));
     const auto pixel = static_cast<std::int32_t>(inside ? inner : none);
-    const float near = bands[pixel].near, far = bands[pixel].far;
+    const float near = bands[pixel].near, far = bands[pixel].far, edge = bands[pixel].edge;
     const float slack = tolerance_m + 0.01F * pz;
-    const bool through = pz < near - 2 * slack;
-    const bool on = (pz <= near + slack) | ((pz >= far - slack) & (pz <= far + slack));
+    bool through = pz < edge - 2 * slack;
+    if constexpr (kNormals) {
+      const float mx = c.R[0] * nx[i] + c.R[3] * ny[i] + c.R[6] * nz[i],
+                  my = c.R[1] * nx[i] + c.R[4] * ny[i] + c.R[7] * nz[i],
+                  mz = c.R[2] * nx[i] + c.R[5] * ny[i] + c.R[8] * nz[i];
+      const float along = mx * px + my * py + mz * pz;
+      const float gap = (edge - pz) * (along < 0 ? -along : along);  // times pz, along the normal
+      through = through & ((gap > tolerance_m * pz) | (mx * mx + my * my + mz * mz < 0.5F));
+    }
+    const bool on =
+        ((pz >= near - 2 * slack) & (pz <= near + slack)) | ((pz >= far - slack) & (pz <= far + slack));
     const std::int32_t said = through ? kLookedThrough : on ? kMeasured : kNoWord;
     const std::int32_t word = far > 0 ? said : kNoWord;
     words[i] = words[i] > word ? words[i] : word;
   }
+}
+
+}  // namespace
+
+LILOC_WIDE void look_at(const Pinhole& camera, const DepthBand* bands, const PointRun& points,
+                        float tolerance_m, std::int32_t* words) {
+  look<false>(camera, bands, points, points, tolerance_m, words);
+}
+
+LILOC_WIDE void look_at(const Pinhole& camera, const DepthBand* bands, const PointRun& points,
+                        const PointRun& normals, float tolerance_m, std::int32_t* words) {
+  look<true>(camera, bands, points, normals, tolerance_m, words);
 }
 
 LILOC_WIDE void reach_into(const HalfSpace* spaces, std::size_t space_count, const PointRun& centres,

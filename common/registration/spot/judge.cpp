@@ -23,17 +23,22 @@ Counts near_bare_target(const Target& target, const Cloud& points, const Eigen::
 Counts device_against_ceiling(const Target& target, const Cloud& points, const Eigen::Isometry3f& T,
                               float tolerance) {
   Counts counts;
-  std::array<float, kAtOnce> x, y, z;
+  std::array<float, kAtOnce> x, y, z, nx, ny, nz;
   std::array<std::int32_t, kAtOnce> words;
+  const bool normals = points.normals.size() == points.size();
   for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
     const std::size_t here = std::min(kAtOnce, points.size() - begin);
     for (std::size_t i = 0; i < here; ++i) {
       const Eigen::Vector3f p = T * points.points[begin + i];
+      const Eigen::Vector3f n =
+          normals ? Eigen::Vector3f(T.linear() * points.normals[begin + i]) : Eigen::Vector3f::Zero();
       x[i] = p.x(), y[i] = p.y(), z[i] = p.z();
+      nx[i] = n.x(), ny[i] = n.y(), nz[i] = n.z();
     }
     std::fill_n(words.begin(), here, kNoWord);
     for (const SightView& view : target.views)
-      view.look_at_all({x.data(), y.data(), z.data(), here}, tolerance, words.data());
+      view.look_at_all({x.data(), y.data(), z.data(), here}, {nx.data(), ny.data(), nz.data(), here}, tolerance,
+                       words.data());
     for (std::size_t i = 0; i < here; ++i) {
       counts.agree += words[i] == kMeasured;
       counts.conflict += words[i] == kLookedThrough &&

@@ -19,6 +19,7 @@ constexpr double kBeside_m = 0.3;  // of what is seen of somebody from above: th
 // Within which they hide a surface from the device, or are one themselves; by hand.
 constexpr double kAround_m = 0.45;
 constexpr float kGone_m = 0.05F;              // a voxel; by hand
+constexpr double kOfGone_m = 0.15;            // a coarse voxel and a half, from what is gone; by hand
 constexpr double kRadius = 2.5, kWidest = 8;  // of neighbourhoods, in voxels; by hand; DECISIONS.md
 
 /// Whether a ceiling sensor looks through the place by now and none sees anything there.
@@ -32,12 +33,14 @@ bool gone(const std::vector<SightView>& views, const Eigen::Vector3f& p_map) {
   return through;
 }
 
-/// Surfaces near `around`, and those that are gone.
+/// Surfaces near who moves, and those that are gone.
 std::vector<std::uint8_t> stale_points(const Cloud& cloud_map, const std::vector<SightView>& views,
-                                       const VoxelMask& around) {
+                                       const VoxelMask& near_moving, const VoxelMask& of_gone) {
   std::vector<std::uint8_t> stale(cloud_map.size(), 0);
-  for (std::size_t i = 0; i < cloud_map.size(); ++i)
-    stale[i] = around.at(cloud_map.points[i]) || gone(views, cloud_map.points[i]) ? 1 : 0;
+  for (std::size_t i = 0; i < cloud_map.size(); ++i) {
+    const Eigen::Vector3f& p_map = cloud_map.points[i];
+    stale[i] = near_moving.at(p_map) || of_gone.at(p_map) || gone(views, p_map) ? 1 : 0;
+  }
   return stale;
 }
 
@@ -148,9 +151,10 @@ const ScoreFields& Surfaces::field_fine() const {
 }
 
 DynamicRegions::DynamicRegions(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
-                               const Cloud& moving_map)
+                               const Cloud& moving_map, const Cloud& gone_map)
     : mask(moving_map.points, kBeside_m),
-      stale(stale_points(surfaces->coarse, views, VoxelMask(moving_map.points, kAround_m))),
+      stale(stale_points(surfaces->coarse, views, VoxelMask(moving_map.points, kAround_m),
+                         VoxelMask(gone_map.points, kOfGone_m))),
       map_points(map_points_of(surfaces->coarse, stale)),
       surfaces_(std::move(surfaces)) {}
 

@@ -54,9 +54,10 @@ class Surfaces {
 /// Where the ceiling's word does not count at this moment, because somebody moves there or has just left.
 class DynamicRegions {
  public:
-  /// `moving_map`: what the ceiling sees move, thinned.
+  /// `moving_map`: what the ceiling sees move; `gone_map`: of the surfaces, what it finds no more; both
+  /// thinned.
   DynamicRegions(std::shared_ptr<const Surfaces> surfaces, const std::vector<SightView>& views,
-                 const Cloud& moving_map);
+                 const Cloud& moving_map, const Cloud& gone_map = {});
 
   const VoxelMask mask;                   ///< where somebody moves: lines of sight past them say nothing
   const std::vector<std::uint8_t> stale;  ///< of each point of Surfaces::coarse: hidden, or not there any more

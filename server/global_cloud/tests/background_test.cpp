@@ -44,7 +44,7 @@ TEST(Background, WhoWalksByIsTakenOutWithARim) {
   Background background(kCamera, {});
   EXPECT_EQ(count(background.learn(with_visitor(0, 0, 0)).still, 4000), 40 * 30);
   for (int i = 1; i < 20; ++i) {
-    const auto [still, moving] = background.learn(with_visitor(0.15 * i, i, i + 6));
+    const auto [still, moving, gone] = background.learn(with_visitor(0.15 * i, i, i + 6));
     EXPECT_EQ(count(still, 2500), 0) << "frame " << i;
     EXPECT_EQ(count(still, 0), 8 * 30) << "frame " << i;
     EXPECT_EQ(count(moving, 2500), 6 * 30) << "frame " << i;
@@ -77,6 +77,52 @@ TEST(Background, WhatLeavesUncoversMapAtOnce) {
   EXPECT_EQ(count(background.learn(with_visitor(1.15, 0, 0)).still, 4000), 40 * 30);
   EXPECT_EQ(background.change(), Change::large);
   EXPECT_EQ(count(background.surfaces(), 4000), 40 * 30);
+}
+
+/// Columns 10 to 15 at a depth of their own; 0: no return.
+DepthImage with_columns_at(double at_s, std::uint16_t units) {
+  DepthImage image = with_visitor(at_s, 10, 16);
+  std::ranges::replace(image.units, std::uint16_t{2500}, units);
+  return image;
+}
+
+TEST(Background, WhoStoodAndWalksAwayIsGoneAtHisFirstStep) {
+  Background background(kCamera, {});
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(count(background.learn(with_columns_at(0.15 * i, 2500)).gone, 0), 40 * 30);
+  (void)background.surfaces();
+  for (int i = 0; i < 4; ++i)  // two depths in a row never agree, so that nothing is known of what is there now
+    EXPECT_EQ(
+        count(
+            background.learn(with_columns_at(0.75 + 0.15 * i, static_cast<std::uint16_t>(2700 + 300 * i))).gone,
+            2500),
+        6 * 30)
+        << "frame " << i;
+  (void)background.learn(with_columns_at(1.5, 2500));
+  EXPECT_EQ(count(background.learn(with_columns_at(1.65, 2500)).gone, 0), 40 * 30) << "he is back";
+}
+
+TEST(Background, WhoLeavesWhereNothingReturnsIsGoneAtTheSecondFrameWithoutAReturn) {
+  Background background(kCamera, {});
+  for (int i = 0; i < 40; ++i) (void)background.learn(with_columns_at(0.15 * i, 2500));
+  (void)background.surfaces();
+  EXPECT_EQ(count(background.learn(with_columns_at(6.00, 0)).gone, 2500), 0) << "a return may be missing once";
+  EXPECT_EQ(count(background.learn(with_columns_at(6.15, 0)).gone, 2500), 6 * 30);
+  EXPECT_EQ(count(background.surfaces(), 2500), 6 * 30) << "it is forgotten after a second";
+  for (int i = 0; i < 10; ++i) (void)background.learn(with_columns_at(6.30 + 0.15 * i, 0));
+  EXPECT_EQ(count(background.learn(with_columns_at(7.80, 0)).gone, 2500), 6 * 30)
+      << "until it is shown no more";
+  EXPECT_EQ(count(background.surfaces(), 2500), 0);
+  EXPECT_EQ(count(background.learn(with_columns_at(7.95, 0)).gone, 0), 40 * 30);
+}
+
+TEST(Background, APixelAloneThatLooksFartherIsNoise) {
+  Background background(kCamera, {});
+  for (int i = 0; i < 5; ++i) (void)background.learn(with_visitor(0.15 * i, 10, 16));
+  (void)background.surfaces();
+  DepthImage image = with_visitor(0.75, 10, 16);
+  image.units[15 * 40 + 12] = 3900;
+  EXPECT_EQ(count(background.learn(image).gone, 0), 40 * 30);
 }
 
 TEST(Background, WhoCameNearerSinceTheFirstFramesLeavesNoGhost) {
@@ -159,7 +205,7 @@ TEST(Background, NoiseAndGapsMoveNothing) {
               ? std::uint16_t{0}
               : static_cast<std::uint16_t>(4000 + (p * 31 + static_cast<std::size_t>(i) * 17) % 60);
     const auto gaps = count(image, 0);
-    const auto [still, moving] = background.learn(image);
+    const auto [still, moving, gone] = background.learn(image);
     EXPECT_EQ(count(still, 0), gaps);
     EXPECT_EQ(count(moving, 0), 40 * 30);
   }
@@ -176,7 +222,7 @@ TEST(Background, AReturnWhereOneWasLackingIsTheRoomsIfItContinuesIt) {
       fresh += static_cast<std::size_t>(i) == first_at && i > 0 ? 1 : 0;
     }
     const auto gaps = count(image, 0);
-    const auto [still, moving] = background.learn(image);
+    const auto [still, moving, gone] = background.learn(image);
     EXPECT_EQ(fresh > 0, i > 0) << "frame " << i;
     EXPECT_EQ(count(moving, 0), 40 * 30) << "frame " << i;
     EXPECT_TRUE(i < 4 || count(still, 0) == gaps) << "frame " << i;
@@ -189,7 +235,7 @@ TEST(Background, APixelAloneIsNoiseAndTakesNothingAlong) {
     DepthImage image = with_visitor(0.15 * i, 0, 0);
     const auto at = static_cast<std::size_t>(40 * (1 + i) + 2 * i);
     if (i > 0) image.units[at] = i % 2 == 0 ? 2500 : 5500;
-    const auto [still, moving] = background.learn(image);
+    const auto [still, moving, gone] = background.learn(image);
     EXPECT_EQ(count(still, 4000), 40 * 30 - (i > 0 ? 1 : 0)) << "frame " << i;
     EXPECT_EQ(count(moving, 0), 40 * 30) << "frame " << i;
   }

@@ -29,8 +29,9 @@ Word word_of(const Pinhole& c, const std::vector<DepthBand>& bands, const Eigen:
       bands[static_cast<std::size_t>(v) * static_cast<std::size_t>(c.width) + static_cast<std::size_t>(u)];
   if (band.far == 0) return kNoWord;
   const float slack = tolerance_m + 0.01F * p_sensor.z();
-  if (p_sensor.z() < band.near - 2 * slack) return kLookedThrough;
-  const bool at_near = p_sensor.z() <= band.near + slack, at_far = std::abs(p_sensor.z() - band.far) <= slack;
+  if (p_sensor.z() < band.edge - 2 * slack) return kLookedThrough;
+  const bool at_near = p_sensor.z() <= band.near + slack && p_sensor.z() >= band.near - 2 * slack,
+             at_far = std::abs(p_sensor.z() - band.far) <= slack;
   return at_near || at_far ? kMeasured : kNoWord;
 }
 
@@ -45,7 +46,10 @@ TEST_P(SightKernelLaw, ManyPointsGetTheWordThatEachGets) {
   std::copy_n(t.data(), 3, camera.t);
   std::vector<DepthBand> bands(32 * 24 + 1);  // the last measured nothing
   for (std::size_t i = 0; i + 1 < bands.size(); ++i)
-    if (i % 7 != 0) bands[i] = {depth(rng), 0}, bands[i].far = bands[i].near + (i % 3 == 0 ? 1.0F : 0.0F);
+    if (i % 7 != 0) {
+      const float near = depth(rng);
+      bands[i] = {near, near + (i % 3 == 0 ? 1.0F : 0.0F), near - (i % 5 == 0 ? 0.4F : 0.0F)};
+    }
   constexpr std::size_t kCount = 20003;  // not a multiple of eight
   const Vectors points = scattered(rng, kCount);
   std::vector<std::int32_t> words(kCount);
@@ -62,6 +66,38 @@ TEST_P(SightKernelLaw, ManyPointsGetTheWordThatEachGets) {
   EXPECT_GT(through, 100U);
   EXPECT_GT(measured, 40U);
   EXPECT_LE(differ, 4U) << "but for rounding at the rim of a pixel";
+}
+
+TEST_P(SightKernelLaw, WhatASurfaceShowsByItsEdgeIsNotLookedThrough) {
+  std::mt19937_64 rng(GetParam());
+  std::uniform_real_distribution<float> side(-0.5F, 0.5F), depth(1, 3), unit(-1, 1);
+  Pinhole camera{{}, {}, 20, 20, 16, 12, 32, 24, 0.2F, 32 * 24};
+  const Eigen::Matrix3f R =
+      Eigen::Quaternionf(unit(rng), unit(rng), unit(rng), unit(rng)).normalized().toRotationMatrix();
+  std::copy_n(R.data(), 9, camera.R);
+  std::vector<DepthBand> bands(32 * 24 + 1, {5, 5, 5});
+  bands.back() = {};
+  constexpr std::size_t kCount = 1003;
+  Vectors points(kCount), along(kCount), across(kCount), unknown(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Eigen::Vector3f p_sensor(side(rng), side(rng), depth(rng));
+    points.set(i, R.transpose() * p_sensor);
+    along.set(i, R.transpose() * p_sensor.unitOrthogonal());
+    across.set(i, R.transpose() * -p_sensor.normalized());
+    unknown.set(i, Eigen::Vector3f::Zero());
+  }
+  const auto through = [&](const Vectors* normals) {
+    std::vector<std::int32_t> words(kCount, kNoWord);
+    if (normals == nullptr)
+      look_at(camera, bands.data(), points.run(0, kCount), 0.05F, words.data());
+    else
+      look_at(camera, bands.data(), points.run(0, kCount), normals->run(0, kCount), 0.05F, words.data());
+    return std::ranges::count(words, kLookedThrough);
+  };
+  EXPECT_EQ(through(nullptr), kCount);
+  EXPECT_EQ(through(&across), kCount);
+  EXPECT_EQ(through(&unknown), kCount) << "without a normal a point counts as before";
+  EXPECT_EQ(through(&along), 0);
 }
 
 TEST_P(SightKernelLaw, ABallReachesInWhereEachHalfSpaceSaysSo) {

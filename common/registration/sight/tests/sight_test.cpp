@@ -44,6 +44,20 @@ TEST(Sight, ReachesWhatItMayLookThroughAndNothingFarAway) {
   EXPECT_FALSE(SightView().reaches({Eigen::Vector3f(-1, -1, -1), Eigen::Vector3f(1, 1, 1)}));
 }
 
+TEST(Sight, BesideAnEdgeOfADevicesCloudNothingConflicts) {
+  Cloud cloud;  // a box at 1.5 m up to x = 0 and a wall at 3 m, in voxels of 0.05 m
+  for (float y = -0.6F; y < 0.6F; y += 0.05F) {
+    for (float x = -0.475F; x < 0; x += 0.05F) cloud.points.emplace_back(x, y, 1.5F);
+    for (float x = -1.0F; x < 1.0F; x += 0.05F)
+      if (x > 0.02F) cloud.points.emplace_back(x, y * 2, 3.0F);
+  }
+  const SightView view = SightView::from_cloud(cloud, kCamera, 0.05, 64);
+  EXPECT_EQ(view.look_sensor({0.1F, 0.0F, 3.0F}, 0.05F), Sight::agrees) << "the wall beside the box";
+  EXPECT_EQ(view.look_sensor({0.04F, 0.0F, 1.5F}, 0.05F), Sight::unseen) << "the box reaches that far, or not";
+  EXPECT_EQ(view.look_sensor({0.15F, 0.0F, 1.5F}, 0.05F), Sight::conflict) << "there the wall is seen";
+  EXPECT_EQ(view.look_sensor({0.04F, 0.0F, 1.2F}, 0.05F), Sight::conflict) << "before both";
+}
+
 TEST(Sight, ManyPointsAreCountedAsEachIsSeen) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const WatchedRoom w = watched_room(seed);

@@ -127,6 +127,22 @@ TEST_P(DynamicRegionsLaw, WhatTheCeilingLooksThroughByNowIsStale) {
   EXPECT_LT(elsewhere, 0.02 * static_cast<double>(was->coarse.size()));
 }
 
+TEST_P(DynamicRegionsLaw, WhatTheCeilingFindsNoMoreIsStaleThoughNobodyLooksThroughIt) {
+  const WatchedRoom w = watched_room(GetParam());
+  const Eigen::Vector3f& gone = w.target->coarse.points[GetParam() * 37 % w.target->coarse.size()];
+  const DynamicRegions before(w.target.surfaces, w.target.views, {}),
+      regions(w.target.surfaces, w.target.views, {}, {{gone}, {}});
+  EXPECT_TRUE(regions.mask.empty()) << "nobody moves there";
+  for (std::size_t i = 0; i < w.target->coarse.size(); ++i) {
+    const float away_m = (w.target->coarse.points[i] - gone).norm();
+    if (away_m < 0.1F) {
+      EXPECT_TRUE(regions.stale[i]);
+    } else if (away_m > 0.4F) {
+      EXPECT_EQ(regions.stale[i], before.stale[i]);
+    }
+  }
+}
+
 TEST_P(DynamicRegionsLaw, WhoeverMovesMakesEmptySpaceUnknownAndLeavesSurfaces) {
   const WatchedRoom w = watched_room(GetParam());
   const ScoreField& field = w.target->field_coarse().regions().front();

@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "common/base/ros_name.hpp"
 #include "common/command/text.hpp"
 #include "common/geometry/pose.hpp"
 #include "common/wire/dds/participant.hpp"
@@ -72,10 +73,10 @@ Status check_network(const client::Options& c) {
 }
 
 Status apply_topics(const GivenOptions& given, DaemonOptions& options) {
-  const std::string& id = options.client.id;
+  const std::string id = ros_name(options.client.id);
   SensorTopics& in = options.topics;
   wire::RosNames& out = options.ros.names;
-  out = wire::RosNames::of(id);
+  out = wire::RosNames::of(options.client.id);
   in.use_points = !given.points.empty();
   const std::tuple<const char*, std::string, std::string, std::string*> names[] = {
       {"--depth-topic", given.depth, id + "/depth/image_rect_raw", &in.depth},

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "common/base/limited_log.hpp"
+
 namespace liloc {
 namespace {
 
@@ -60,7 +62,7 @@ void RosBridge::tell(const client::PoseUpdate& update) {
                                          update.odom_segment);
     if (told) told = publisher_.publish_map_odom(update.stamp_ns + ahead_ns_, T_map_odom);
   }
-  if (!told) log::warning("{}: not published: {}", id_, told.error().message);
+  if (!told) log::limited(lines_, "{}: not published: {}", id_, told.error().message);
 }
 
 wire::Diagnosis diagnosis_of(const std::string& id, const client::PoseUpdate& newest, const client::Stats& s,
@@ -106,7 +108,9 @@ wire::Diagnosis diagnosis_of(const std::string& id, const client::PoseUpdate& ne
 
 void RosBridge::diagnose(const client::PoseUpdate& newest, const client::Stats& stats, bool silent) {
   const Status told = publisher_.publish_diagnosis(wall_clock_ns(), diagnosis_of(id_, newest, stats, silent));
-  if (!told) log::warning("{}: not published: {}", id_, told.error().message);
+  if (told) return;
+  const std::scoped_lock lock(mutex_);
+  log::limited(lines_, "{}: not published: {}", id_, told.error().message);
 }
 
 }  // namespace liloc

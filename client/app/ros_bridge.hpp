@@ -4,6 +4,7 @@
 
 #include "client/app/map_odom_slew.hpp"
 #include "client/app/options.hpp"
+#include "common/base/line_limit.hpp"
 #include "common/wire/ros/ros_publishers.hpp"
 
 namespace liloc {
@@ -28,6 +29,7 @@ class RosBridge {
   const wire::RosPublisher publisher_;
   std::mutex mutex_;  ///< all below
   MapOdomSlew slew_;
+  LineLimit lines_;
 };
 
 /// What `diagnose` says: level, one line, and the figures.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/base/limited_log.hpp"
+
 namespace liloc {
 Status SensorFeed::subscribe_frames(wire::Dispatcher& sensors) {
   const SensorTopics& topics = options_.topics;
@@ -87,7 +89,8 @@ void SensorFeed::take_camera_info(const Result<Camera>& camera) {
                                std::abs(camera->cx - c.cx), std::abs(camera->cy - c.cy)});
   const bool differs = camera->width != c.width || camera->height != c.height || off > 1.0;
   if (differs && !camera_differs_)
-    log::warning(
+    log::limited(
+        camera_lines_,
         "camera_info ({}x{}, fx {:.1f}) differs from the intrinsics in use ({}x{}, fx {:.1f}): correct {}",
         camera->width, camera->height, camera->fx, c.width, c.height, c.fx,
         options_.device_file.empty() ? "the driver" : options_.device_file);

@@ -32,7 +32,8 @@ class SensorFeed {
 
   const DaemonOptions options_;
   client::Client& client_;
-  LineLimit complaints_;  ///< a misconfigured driver sends a bad sample thirty times a second
+  LineLimit camera_lines_;  ///< two cameras on one topic take turns
+  LineLimit complaints_;    ///< a misconfigured driver sends a bad sample thirty times a second
   bool camera_unread_ = false, camera_differs_ = false, frame_differs_ = false;
 };
 

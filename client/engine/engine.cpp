@@ -11,7 +11,7 @@
 #include "client/odometry/informativeness.hpp"
 #include "client/odometry/odometry.hpp"
 #include "client/odometry/points_view.hpp"
-#include "common/base/log.hpp"
+#include "common/base/limited_log.hpp"
 #include "common/base/stamp_watch.hpp"
 #include "common/geometry/depth.hpp"
 
@@ -96,6 +96,7 @@ struct Engine::Impl {
   std::uint32_t segment = 0;
   std::optional<SpotRequest> request;
   std::vector<std::uint64_t> unanswered;
+  LineLimit clock_lines, unanswered_lines, unsent_lines;
 };
 
 Result<StampNs> Engine::Impl::check(const DepthImage& image) {
@@ -111,8 +112,8 @@ Result<StampNs> Engine::Impl::check(const DepthImage& image) {
 
 /// What was asked and answered counts on by the new clock; the motion in between was seen by nobody.
 void Engine::Impl::set_clock_back(StampNs by_ns) {
-  log::warning("{}: the device's clock was set back by {:.1f} s: its odometry begins anew", options.client_id,
-               -to_seconds(by_ns));
+  log::limited(clock_lines, "{}: the device's clock was set back by {:.1f} s: its odometry begins anew",
+               options.client_id, -to_seconds(by_ns));
   schedule.clock_set(by_ns);
   link.clock_set(by_ns);
   doubt.clock_set(by_ns);
@@ -180,7 +181,7 @@ void Engine::Impl::judge_imu(StampNs stamp_ns, const Placed& placed) {
 void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, const Placed& placed) {
   for (const std::uint64_t seq : schedule.take_unanswered(image.stamp_ns)) {
     unanswered.push_back(seq);
-    log::warning("{}: request {} was not answered within {:.1f} s", options.client_id, seq,
+    log::limited(unanswered_lines, "{}: request {} was not answered within {:.1f} s", options.client_id, seq,
                  to_seconds(options.reply_timeout_ns));
   }
   if (!schedule.due(image.stamp_ns, placed.informative, !placed.step.doubtful)) return;
@@ -189,7 +190,8 @@ void Engine::Impl::ask_if_due(const DepthImage& image, const Cloud* points, cons
                          link.located(placed.step.segment));
   });
   if (!made) {
-    log::warning("{}: frame {} is not sent: {}", options.client_id, image.stamp_ns, made.error().message);
+    log::limited(unsent_lines, "{}: frame {} is not sent: {}", options.client_id, image.stamp_ns,
+                 made.error().message);
     return;
   }
   if (external)
@@ -288,6 +290,8 @@ std::string Engine::problem() const {
   if (!impl_->started) return "";
   if (std::string problem = impl_->clock_problem(); !problem.empty()) return problem;
   if (std::string problem = impl_->inputs.problem(); !problem.empty()) return problem;
+  if (impl_->external)
+    if (std::string problem = impl_->external->problem(); !problem.empty()) return problem;
   if (impl_->external && !impl_->external->placed()) return "no odometry for the newest frame";
   return impl_->imu ? impl_->imu->problem() : "";
 }

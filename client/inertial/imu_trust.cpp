@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/base/log.hpp"
+#include "common/base/limited_log.hpp"
 
 namespace liloc {
 namespace {
@@ -109,7 +109,7 @@ void ImuTrust::leave_out(Reason reason) {
   left_out_ns_ = now_ns_;
   factor_.reset();
   explain();
-  log::warning("the IMU is left out: {}", problem());
+  log::limited(left_out_lines_, "the IMU is left out: {}", problem());
 }
 
 /// A bias that was calibrated from numbers in another unit is none.
@@ -134,7 +134,7 @@ bool ImuTrust::agrees_again() const {
 }
 
 void ImuTrust::believe_again() {
-  log::info("the IMU agrees with the depth again");
+  if (believed_lines_.pass(std::chrono::steady_clock::now())) log::info("the IMU agrees with the depth again");
   retry_ns_ = reason_ == Reason::strain ? std::min(2 * retry_ns_, kLongestRetry) : kFirstRetry;
   reason_ = Reason::none;
   offset_.reset();
@@ -165,7 +165,7 @@ void ImuTrust::explain() {
   record_.take_off(*found);
   offset_.reset();
   late_frames_ = 0;
-  log::warning("{}: corrected; stamp both by one clock", apart(corrected_ns_));
+  log::limited(corrected_lines_, "{}: corrected; stamp both by one clock", apart(corrected_ns_));
   if (reason_ == Reason::none)
     begin_anew();
   else

@@ -3,6 +3,7 @@
 
 #include "client/inertial/imu_agreement.hpp"
 #include "client/inertial/imu_track.hpp"
+#include "common/base/line_limit.hpp"
 
 namespace liloc {
 
@@ -54,6 +55,7 @@ class ImuTrust {
   int far_frames_ = 0, late_frames_ = 0;  ///< in a row
   int unmatched_ = 0;                     ///< likewise, of frames that are rare
   Reason reason_ = Reason::none;
+  LineLimit left_out_lines_, believed_lines_, corrected_lines_;
   StampNs left_out_ns_ = 0, retry_ns_ = kFirstRetry;  ///< when, and after how long it is tried again
   std::optional<double> factor_;                      ///< of the gyro or the force, against what was seen
   StampNs explained_ns_ = 0;                          ///< when an explanation was sought last

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/base/log.hpp"
+#include "common/base/limited_log.hpp"
 
 namespace liloc {
 namespace {
 
 // In m/s, rad/s: of a pose beyond the samples; by hand.
+// Three jumps among a dozen samples are no hiccup; forty that go on forget any number; by hand.
+constexpr int kJump = 4, kManyJumps = 10, kMostJumps = 40;
 constexpr double kGuessedSpeedError = 0.3, kGuessedTurnError = 0.3;
 
 double share_of(StampNs from_ns, StampNs at_ns, StampNs to_ns) {
@@ -34,10 +36,27 @@ bool ExternalOdometry::continues(const OdometrySample& from, const OdometrySampl
 
 /// What the device did until the clock of the odometry is known again, nobody knows.
 void ExternalOdometry::set_clock(StampNs by_ns) {
-  log::warning("odometry from outside: its clock was set back by {:.1f} s; a new segment starts",
+  log::limited(clock_lines_, "odometry from outside: its clock was set back by {:.1f} s; a new segment starts",
                -to_seconds(by_ns));
   entries_.clear();
   ++segment_;
+}
+
+void ExternalOdometry::jump(const OdometrySample& from, const OdometrySample& to) {
+  ++segment_;
+  jumps_ = std::min(jumps_ + kJump, kMostJumps);
+  jump_m_ = distance_m(from.T_odom_base, to.T_odom_base);
+  jump_s_ = to_seconds(to.stamp_ns - from.stamp_ns);
+  log::limited(jump_lines_, "odometry from outside: {:.2f} m, {:.1f} deg in {:.2f} s; a new segment starts",
+               jump_m_, degrees(angle_between_rad(from.T_odom_base, to.T_odom_base)), jump_s_);
+}
+
+std::string ExternalOdometry::problem() const {
+  if (jumps_ < kManyJumps) return "";
+  return fmt::format(
+      "odometry from outside jumps again and again, {:.2f} m in {:.2f} s: it must be in metres and of one "
+      "source",
+      jump_m_, jump_s_);
 }
 
 /// Drivers fill what they do not know with NaN, or -1 as ROS has it.
@@ -59,13 +78,10 @@ Status ExternalOdometry::add(const OdometrySample& sample) {
   const auto set_by_ns = stamps_.add(sample.stamp_ns);
   if (!set_by_ns) return tl::unexpected(set_by_ns.error());
   if (*set_by_ns < 0) set_clock(*set_by_ns);
-  if (!entries_.empty() && !continues(entries_.back().sample, sample)) {
-    ++segment_;
-    log::warning("odometry from outside: {:.2f} m, {:.1f} deg in {:.2f} s; a new segment starts",
-                 distance_m(entries_.back().sample.T_odom_base, sample.T_odom_base),
-                 degrees(angle_between_rad(entries_.back().sample.T_odom_base, sample.T_odom_base)),
-                 to_seconds(sample.stamp_ns - entries_.back().sample.stamp_ns));
-  }
+  if (!entries_.empty() && !continues(entries_.back().sample, sample))
+    jump(entries_.back().sample, sample);
+  else
+    jumps_ = std::max(jumps_ - 1, 0);
   entries_.push_back({sample, segment_});
   know(entries_.back().sample);
   entries_.back().sample.T_odom_base = normalized(sample.T_odom_base);

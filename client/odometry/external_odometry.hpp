@@ -1,9 +1,11 @@
 #pragma once
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "client/inertial/sample_stamps.hpp"
 #include "client/odometry/odometry.hpp"
+#include "common/base/line_limit.hpp"
 
 namespace liloc {
 
@@ -37,6 +39,8 @@ class ExternalOdometry {
   /// newest, or where there is none near; the pose is then the last one and `placed` is false.
   [[nodiscard]] OdometryStep step(StampNs stamp_ns);
   [[nodiscard]] bool placed() const { return placed_; }
+  /// Why no segment lasts, empty where they do: the samples jump again and again.
+  [[nodiscard]] std::string problem() const;
   /// The growth of the covariance is counted from the last step on.
   void mark() { marked_ = last_covariance_; }
   /// The frames' clock was set: a new segment starts.
@@ -52,6 +56,7 @@ class ExternalOdometry {
 
   void set_clock(StampNs by_ns);
   void know(OdometrySample& sample);
+  void jump(const OdometrySample& from, const OdometrySample& to);
 
   ExternalOdometryOptions options_;
   StampWatch stamps_{{"odometry", kClosestSampleNs, kJudgedSamples}};
@@ -62,6 +67,9 @@ class ExternalOdometry {
   std::uint32_t last_segment_ = 0;
   bool placed_ = false;
   bool covariance_told_ = false;
+  int jumps_ = 0;  ///< kJump for each, one less for each sample that goes on
+  double jump_m_ = 0, jump_s_ = 0;
+  LineLimit clock_lines_, jump_lines_;  ///< odometry in another unit jumps with each sample
   std::optional<Matrix6d> last_covariance_, marked_;
 };
 

@@ -5,7 +5,7 @@
 
 #include "client/odometry/match_check.hpp"
 #include "client/odometry/relocate.hpp"
-#include "common/base/log.hpp"
+#include "common/base/limited_log.hpp"
 #include "common/geometry/pose_estimate.hpp"
 
 namespace liloc {
@@ -198,7 +198,8 @@ void Odometry::tell_doubt(OdometryStep& step) {
 }
 
 void Odometry::start_segment(StampNs stamp_ns) {
-  log::warning("odometry lost for {:.1f} s: a new segment starts", to_seconds(stamp_ns - segment_.anchored_ns));
+  log::limited(lost_lines_, "odometry lost for {:.1f} s: a new segment starts",
+               to_seconds(stamp_ns - segment_.anchored_ns));
   begin_anew();
 }
 

@@ -4,6 +4,7 @@
 #include "client/odometry/motion_model.hpp"
 #include "client/odometry/pose_source.hpp"
 #include "client/odometry/standing_view.hpp"
+#include "common/base/line_limit.hpp"
 
 namespace liloc {
 
@@ -104,6 +105,7 @@ class Odometry {
 
   OdometryOptions options_;
   Segment segment_;
+  LineLimit lost_lines_;
   MotionModel motion_;
   StandingView standing_;
   bool has_imu_ = false;                 ///< this frame

@@ -12,7 +12,7 @@
 #include "client/session/server_choice.hpp"
 #include "client/session/session_clock.hpp"
 #include "common/base/bounded_queue.hpp"
-#include "common/base/log.hpp"
+#include "common/base/limited_log.hpp"
 #include "common/base/stamp_watch.hpp"
 
 namespace liloc {
@@ -85,8 +85,10 @@ struct Session::Impl {
   Engine engine;
   std::optional<TraceWriter> trace;
 
-  FrameBudget budget;     ///< of the registration thread
-  bool skipping = false;  ///< likewise
+  FrameBudget budget;                  ///< of the registration thread
+  bool skipping = false;               ///< likewise
+  LineLimit clock_lines, codec_lines;  ///< likewise
+  LineLimit server_lines, jump_lines;  ///< of the network thread
 
   BoundedQueue<SensorFrame> frames;
   BoundedQueue<SpotRequest> outbox;
@@ -152,7 +154,7 @@ void Session::Impl::keep_time(const SensorFrame& input, bool set_back) {
   const bool jumped = clock.frame(input.image.stamp_ns, input.arrived);
   if (!set_back && !jumped) return;
   report.count(&SessionStats::clock_jumps);
-  if (jumped) log::warning("{}: the device's clock was set to {} ns", id(), input.image.stamp_ns);
+  if (jumped) log::limited(clock_lines, "{}: the device's clock was set to {} ns", id(), input.image.stamp_ns);
 }
 
 void Session::Impl::process(const SensorFrame& input) {
@@ -202,8 +204,8 @@ CloudCodec Session::Impl::choose_codec() {
   const CloudCodec chosen = codec;
   lock.unlock();
   if (chosen != before)
-    log::warning("{}: clouds travel as {} in place of {}: that is what the servers in sight read", id(),
-                 name_of(chosen), name_of(before));
+    log::limited(codec_lines, "{}: clouds travel as {} in place of {}: that is what the servers in sight read",
+                 id(), name_of(chosen), name_of(before));
   return chosen;
 }
 
@@ -221,7 +223,7 @@ bool Session::Impl::follows(const SpotReply& reply) {
   if (!servers.takes(reply)) return false;
   lock.unlock();
   if (!before.empty() && reply.server_id != before)
-    log::warning("{}: {} answers in place of {}", id(), reply.server_id, before);
+    log::limited(server_lines, "{}: {} answers in place of {}", id(), reply.server_id, before);
   return true;
 }
 
@@ -304,7 +306,8 @@ bool Session::add_reply(const SpotReply& reply) {
   if (!impl_->follows(reply)) return false;
   if (impl_->clock.learn(reply, now())) {
     impl_->report.count(&SessionStats::clock_jumps);
-    log::warning("{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
+    log::limited(impl_->jump_lines,
+                 "{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
                  impl_->id());
   }
   const std::scoped_lock lock(impl_->engine_mutex);

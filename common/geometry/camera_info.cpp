@@ -56,7 +56,8 @@ Result<Camera> binned(Camera camera, const CameraInfo& info) {
 Result<Camera> camera_of(const CameraInfo& info) {
   if (info.width < 1 || info.width > kLargestSide || info.height < 1 || info.height > kLargestSide)
     return fail("camera_info is {} x {}, must be 1..{} each way", info.width, info.height, kLargestSide);
-  if (info.k[0] == 0) return fail("camera_info has no intrinsics (k is 0): calibrate the camera");
+  if (info.k[0] == 0 && info.p[0] == 0)
+    return fail("camera_info has no intrinsics (k and p are 0): calibrate the camera");
   return intrinsics_of(info)
       .and_then([&](const Camera& whole) { return in_region(whole, info); })
       .and_then([&](const Camera& part) { return binned(part, info); });

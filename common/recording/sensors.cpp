@@ -1,13 +1,11 @@
 // site.json and device.json, both ways.
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
 #include <set>
 
 #include "common/base/ids.hpp"
-#include "common/base/quantile.hpp"
+#include "common/base/ros_name.hpp"
 #include "common/recording/files.hpp"
 #include "common/recording/json_fields.hpp"
+#include "common/recording/site_extent.hpp"
 #include "common/recording/writer.hpp"
 
 namespace liloc {
@@ -27,35 +25,6 @@ Result<GlobalLidar> lidar_of(const JsonFields& fields) {
   const auto T_map_sensor = fields.pose("T_map_sensor");
   if (!T_map_sensor) return tl::unexpected(T_map_sensor.error());
   return GlobalLidar{*id, *camera, *rate_hz, *T_map_sensor};
-}
-
-/// The grids of a room cover its extent: a box of these walls takes some gigabyte.
-constexpr double kReach_m = 10;         // of a LiDAR, sideways
-constexpr double kLargest_m2 = 10'000;  // over twice what 64 LiDARs, as many as a status holds, can cover
-
-/// Names the LiDAR that hangs farthest from the middle one.
-Status check_extent(const std::string& file, const std::vector<GlobalLidar>& lidars) {
-  Eigen::AlignedBox2d box;
-  std::array<std::vector<double>, 2> along;
-  for (const GlobalLidar& lidar : lidars) {
-    const Eigen::Vector2d place = lidar.T_map_sensor.translation().head<2>();
-    box.extend(place);
-    along[0].push_back(place.x());
-    along[1].push_back(place.y());
-  }
-  const Eigen::Vector2d sides = box.sizes().array() + 2 * kReach_m;
-  if (sides.prod() <= kLargest_m2) return {};
-  const Eigen::Vector2d middle(quantile(along[0], 0.49), quantile(along[1], 0.49));  // of two the first
-  const auto away = [&](const GlobalLidar& l) {
-    return (l.T_map_sensor.translation().head<2>() - middle).norm();
-  };
-  const auto far = std::ranges::max_element(lidars, {}, away);
-  return fail(
-      "{}: global_lidars[{}].T_map_sensor.translation: {} hangs {:.0f} m from the middle one; a site spans at "
-      "most "
-      "{:.0f} m2 along the map's axes, with {:.0f} m around, this one {:.0f} x {:.0f} m: give metres, or make "
-      "two sites",
-      file, far - lidars.begin(), far->id, away(*far), kLargest_m2, kReach_m, sides.x(), sides.y());
 }
 
 Status read_inertial(const JsonFields& fields, DeviceInfo& device) {
@@ -97,7 +66,9 @@ Result<Site> read_site(const std::filesystem::path& file) {
       return fail("{} is a {}; give an object {{...}}", where, (*list)[i].type_name());
     auto lidar = lidar_of(JsonFields((*list)[i], where));
     if (!lidar) return tl::unexpected(lidar.error());
-    if (!seen.insert(lidar->id).second) return fail("{}.id '{}' is used twice; rename one", where, lidar->id);
+    if (!seen.insert(ros_name(lidar->id)).second)
+      return fail("{}.id '{}' is used twice (- and _ are one in the names of topics); rename one", where,
+                  lidar->id);
     site.global_lidars.push_back(std::move(*lidar));
   }
   if (const Status extent = check_extent(name, site.global_lidars); !extent)

@@ -36,6 +36,7 @@ Status LoadOptions::validated() const {
                            within(clock_offset_s, 0, 3600, "clock-offset"), within(freeze_s, 0, 60, "freeze"),
                            within(domain, -1, 230, "domain")})
     if (!ok) return ok;
+  if (!codec_from(codec)) return fail("load: --codec is '{}'; use draco, voxel or octree", codec);
   if (churn_s > 0 && churn_s < 2) return fail("load: --churn is {}, must be 0 or 2 s and more", churn_s);
   if (kidnap_s > 0 && kidnap_s < 1) return fail("load: --kidnap is {}, must be 0 or 1 s and more", kidnap_s);
   if (freeze_s > seconds / 2)

@@ -33,6 +33,7 @@ struct LoadOptions {
   int domain = -1;                          ///< of a server that runs already; -1: start one
   std::string server;                       ///< its host; empty: this one
   std::string credentials;                  ///< a server's, for all who take part; empty: none
+  std::string codec = "draco";              ///< of the clouds that devices send
 
   /// Devices come in over most of the warm-up; all that follows is measured.
   [[nodiscard]] static double warmup_s(int clients) { return 6 + 0.05 * clients; }

@@ -60,6 +60,7 @@ class Author {
     EngineOptions engine = replay::engine_options_of(device, device.T_imu_sensor.has_value());
     engine.interval_ns = engine.searching_interval_ns = from_seconds(kFrame_s);
     engine.seed = options.seed;
+    engine.codec = *codec_from(options.codec);
     return engine;
   }
 

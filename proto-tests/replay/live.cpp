@@ -68,7 +68,7 @@ Status send(const Streams& streams, const Recording& recording, const Event& eve
     facts.skipped.push_back(image.error().message);
     return {};
   }
-  if (!ceiling) ++facts.device_frames_used;
+  ++(ceiling ? facts.ceiling_frames_used : facts.device_frames_used);
   return ceiling ? streams.ceiling(event.source, *image) : streams.device(event.source, *image);
 }
 

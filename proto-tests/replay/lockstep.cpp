@@ -116,6 +116,7 @@ class Lockstep {
     if (!image) return skip(image.error().message);
     if (auto status = cloud_.add_depth(event.source, std::move(*image)); !status)
       return skip(status.error().message);
+    ++facts.ceiling_frames_used;
     newest_ceiling_ns_[event.source] = event.stamp_ns;
     answer_due(event.stamp_ns);
   }

@@ -13,14 +13,24 @@ tl::unexpected<ReplayError> ended(Error error, bool bad_input) {
   return tl::unexpected(ReplayError{std::move(error), bad_input});
 }
 
-/// A replay that could use no frame of any device has located nothing, however smoothly it ran.
-Status check_used(const Recording& recording, const RunFacts& run) {
-  if (run.device_frames == 0 || run.device_frames_used > 0) return {};
-  const std::string devices = (recording.root / "devices").string();
+/// `folder` holds the frames, `kind` names them.
+tl::unexpected<Error> none_used(const Recording& recording, const RunFacts& run, const char* folder,
+                                const char* kind, std::size_t frames) {
+  const std::string where = (recording.root / folder).string();
   const auto first = std::ranges::find_if(
-      run.skipped, [&](const std::string& line) { return line.find(devices) != std::string::npos; });
-  return fail("{}: none of its {} device frames could be used; the first: {}", recording.root.string(),
-              run.device_frames, first == run.skipped.end() ? "unknown" : *first);
+      run.skipped, [&](const std::string& line) { return line.find(where) != std::string::npos; });
+  return fail("{}: none of its {} {} frames could be used; the first: {}", recording.root.string(), frames,
+              kind, first == run.skipped.end() ? "unknown" : *first);
+}
+
+/// A replay that could use no frame of any device, or none of the ceiling, has located nothing, however
+/// smoothly it ran.
+Status check_used(const Recording& recording, const RunFacts& run) {
+  if (run.device_frames > 0 && run.device_frames_used == 0)
+    return none_used(recording, run, "devices", "device", run.device_frames);
+  if (run.ceiling_frames > 0 && run.ceiling_frames_used == 0)
+    return none_used(recording, run, "global", "ceiling", run.ceiling_frames);
+  return {};
 }
 
 }  // namespace

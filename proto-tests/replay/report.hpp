@@ -15,7 +15,7 @@ struct RunFacts {
   std::uint64_t seed = 1;
   double wall_s = 0, recorded_s = 0;
   std::size_t ceiling_frames = 0, device_frames = 0;
-  std::size_t device_frames_used = 0;            ///< of device_frames, those that were sound
+  std::size_t ceiling_frames_used = 0, device_frames_used = 0;  ///< those that were sound
   std::map<std::string, double> client_cpu_s;    ///< of each device's engine; over DDS of its whole process
   std::map<std::string, double> client_peak_mb;  ///< of each client process, at most; DDS alone can tell
   std::vector<std::string> skipped;              ///< one line per frame that could not be used

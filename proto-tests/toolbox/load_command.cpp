@@ -77,6 +77,8 @@ void add_device_options(CLI::App& command, load::LoadOptions& o) {
   command.add_option("--frame-loss", o.frame_loss, "Share of the devices' frames")->capture_default_str();
   command.add_option("--clock-offset", o.clock_offset_s, "Devices' clocks are off by up to so many seconds")
       ->capture_default_str();
+  command.add_option("--codec", o.codec, "How their clouds travel: draco, voxel or octree")
+      ->capture_default_str();
   command.add_flag("--in-phase", o.in_phase, "All devices start at one moment");
 }
 

@@ -5,6 +5,8 @@
 
 #include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
+#include "common/base/ros_name.hpp"
+#include "common/base/stamp_watch.hpp"
 #include "common/wire/sensors/sensors.hpp"
 #include "server/ingest/lidar_monitor.hpp"
 
@@ -33,7 +35,7 @@ void report(const wire::LidarHealth& health, double rate_hz) {
     case wire::LidarState::silent:
       return log::warning(
           "{}: silent; is it running, and does it send rt/{}/depth/image_rect_raw in this domain?", health.id,
-          health.id);
+          ros_name(health.id));
     case wire::LidarState::malformed:
       return log::warning("{}: malformed: {}", health.id, health.last_error);
     case wire::LidarState::blind:
@@ -71,8 +73,8 @@ Result<std::unique_ptr<Ingest>> Ingest::create(wire::Dispatcher& dispatcher, con
   if (site.global_lidars.empty()) return fail("site has no global_lidars; nothing could be localized against");
   std::unique_ptr<Ingest> ingest(new Ingest(std::move(sink)));
   for (const auto& lidar : site.global_lidars)
-    ingest->lidars_.push_back(
-        std::make_unique<Lidar>(Lidar{lidar, LidarMonitor(lidar.id, lidar.rate_hz, Clock::now())}));
+    ingest->lidars_.push_back(std::make_unique<Lidar>(Lidar{
+        lidar, LidarMonitor(lidar.id, lidar.rate_hz, Clock::now(), lidar.T_map_sensor.translation().z())}));
   ingest->clocks_ = SiteClocks(ingest->lidars_.size());
   for (std::size_t i = 0; i < ingest->lidars_.size(); ++i)
     if (auto subscribed = ingest->subscribe(dispatcher, i); !subscribed)
@@ -87,14 +89,14 @@ Status Ingest::subscribe(wire::Dispatcher& dispatcher, std::size_t index) {
     if (!image) return drop(index, image.error().message);
     if (auto size = same_size(lidar, "depth image", image->width, image->height); !size)
       return drop(index, size.error().message);
-    take(index, image->stamp_ns, content_of(*image, lidar.camera), [&](StampNs stamp_ns) {
+    take(index, image->stamp_ns, content_of(*image, lidar.camera, lidar.T_map_sensor), [&](StampNs stamp_ns) {
       image->stamp_ns = stamp_ns;
       return sink_.add_depth(index, std::move(*image));
     });
   };
   const auto on_points = [this, index, &lidar](const Result<wire::StampedCloud>& cloud) {
     if (!cloud) return drop(index, cloud.error().message);
-    take(index, cloud->stamp_ns, content_of(cloud->cloud_sensor, lidar.camera),
+    take(index, cloud->stamp_ns, content_of(cloud->cloud_sensor, lidar.camera, lidar.T_map_sensor),
          [&](StampNs stamp_ns) { return sink_.add_points(index, stamp_ns, cloud->cloud_sensor); });
   };
   if (auto ok = wire::subscribe_depth(dispatcher, lidar.id, lidar.camera.depth_scale_m, on_depth); !ok)
@@ -106,6 +108,8 @@ Status Ingest::subscribe(wire::Dispatcher& dispatcher, std::size_t index) {
 
 void Ingest::take(std::size_t index, StampNs stamp_ns, const FrameContent& content,
                   const std::function<Status(StampNs)>& add) {
+  if (const Status unit = check_unit_by(wall_clock_ns(), stamp_ns, "depth"); !unit)
+    return drop(index, unit.error().message);
   const auto now = Clock::now();
   std::optional<StampNs> site_stamp_ns;
   {

@@ -1,6 +1,7 @@
 #include "server/ingest/lidar_monitor.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -18,6 +19,20 @@ constexpr double kLeastFar_m = 1.5;
 constexpr double kOtherRange = 3;  // times the usual: no furniture does that, the smallest mix-up of units is 4
 constexpr std::uint64_t kKnown = 50;    // frames before a range is usual
 constexpr double kMostAveraged = 5000;  // frames: a quarter of an hour at 6 Hz
+
+// Between the usual units of depth: 0.001 m, 0.00025 m and 0.0001 m.
+constexpr std::array<double, 3> kBetweenUnits{2.5, 4, 10};
+// Where a floor so near below, or so far, would be at z = 0 in another unit, the unit is wrong. No ceiling is
+// so low; rooms so high are rare; by hand.
+constexpr double kLowest_m = 2.2, kHighest_m = 6, kSameHeight = 0.06;
+
+/// Whether in another unit what lies lowest would lie at the map's z = 0.
+bool floor_fits_another_unit(double drop_m, double height_m) {
+  if (drop_m <= 0 || height_m <= 0) return false;
+  const double factor = drop_m < kLowest_m ? height_m / drop_m : drop_m > kHighest_m ? drop_m / height_m : 1;
+  return std::ranges::any_of(kBetweenUnits,
+                             [&](double between) { return std::abs(factor / between - 1) < kSameHeight; });
+}
 
 /// 0 without frames.
 double median_of(const std::vector<FrameContent>& frames, double FrameContent::*field) {
@@ -44,11 +59,13 @@ FrameContent LidarMonitor::lately() const {
     if (frame.content.returns >= kFewestReturns) seeing.push_back(frame.content);
   }
   return {median_of(all, &FrameContent::returns), median_of(seeing, &FrameContent::usable),
-          median_of(seeing, &FrameContent::range_m), median_of(seeing, &FrameContent::far_m)};
+          median_of(seeing, &FrameContent::range_m), median_of(seeing, &FrameContent::far_m),
+          median_of(seeing, &FrameContent::drop_m)};
 }
 
 bool LidarMonitor::implausible(const FrameContent& content) const {
   if (content.usable < kLeastUsable || content.far_m < kLeastFar_m) return true;
+  if (floor_fits_another_unit(content.drop_m, height_m_)) return true;
   return learned_ >= kKnown && std::abs(std::log(content.range_m / usual_range_m_)) > std::log(kOtherRange);
 }
 

@@ -15,9 +15,10 @@ class LidarMonitor {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// `rate_hz` is what the site expects; 0 where it does not say.
-  LidarMonitor(std::string id, double rate_hz, Time start)
-      : id_(std::move(id)), rate_hz_(rate_hz), start_(start) {}
+  /// `rate_hz` is what the site expects; 0 where it does not say. `height_m`: over the map's z = 0, which at
+  /// most sites is the floor; 0 where it is not known.
+  LidarMonitor(std::string id, double rate_hz, Time start, double height_m = 0)
+      : id_(std::move(id)), rate_hz_(rate_hz), height_m_(height_m), start_(start) {}
 
   void on_frame(Time now, const FrameContent& content);
   void on_malformed(Time now, const std::string& error);
@@ -42,7 +43,7 @@ class LidarMonitor {
   void learn_range();
 
   std::string id_;
-  double rate_hz_;
+  double rate_hz_, height_m_;
   Time start_, last_frame_, last_malformed_;
   std::deque<Frame> recent_;  // frames of the rate window, at most 512
   std::uint64_t frames_ = 0, malformed_ = 0, malformed_in_a_row_ = 0, learned_ = 0;

@@ -37,18 +37,28 @@ void print_json(const AlignResult& result, double latency_ms) {
   fmt::print("{}\n", json.dump());
 }
 
+/// The same pose between the files' own coordinates.
+Pose between_files(const Pose& T_target_source, const PlacedCloud& source, const PlacedCloud& target) {
+  return Eigen::Translation3d(target.origin) * T_target_source * Eigen::Translation3d(-source.origin);
+}
+
 int run(const AlignArguments& arguments) {
-  const auto source = read_cloud_file(arguments.source);
+  const auto source = read_placed_cloud(arguments.source);
   if (!source) return complain(source.error(), kBadUsage);
-  const auto target = read_cloud_file(arguments.target);
+  const auto target = read_placed_cloud(arguments.target);
   if (!target) return complain(target.error(), kBadUsage);
   const Stopwatch watch;
-  const auto result = align_clouds(*source, *target, arguments.options);
+  auto result = align_clouds(source->cloud, target->cloud, arguments.options);
   if (!result)
     return complain({fmt::format("{} into {}: {}", arguments.source, arguments.target, result.error().message)},
                     kFailed);
+  if (result->found) result->T_target_source = between_files(result->T_target_source, *source, *target);
   (arguments.json ? print_json : print_text)(*result, watch.elapsed_ms());
-  return kDone;
+  if (result->found) return kDone;
+  return complain(
+      {fmt::format("{} into {}: nothing fits, the matrix says nothing; do they show the same place?",
+                   arguments.source, arguments.target)},
+      kFailed);
 }
 
 }  // namespace

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <exception>
 #include <optional>
 
+#include "common/base/quantile.hpp"
 #include "server/tools/pcd_header.hpp"
 #include "server/tools/ply_file.hpp"
 #include "server/tools/scalar.hpp"
@@ -40,8 +42,11 @@ std::optional<Scalar> scalar_of(std::uint8_t datatype) {
   }
 }
 
+// Beyond what the cloud itself spans. A sensor sees half as far. By hand.
+constexpr double kFarOff_m = 20;
+
 /// x, y and z of every point as they are stored: PCL's own conversion takes an axis of another type for zero.
-Result<Cloud> points_of(const pcl::PCLPointCloud2& stored, const std::string& name) {
+Result<Points> points_of(const pcl::PCLPointCloud2& stored, const std::string& name) {
   std::array<std::pair<Scalar, std::size_t>, 3> axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string wanted(1, "xyz"[axis]);
@@ -53,19 +58,19 @@ Result<Cloud> points_of(const pcl::PCLPointCloud2& stored, const std::string& na
   }
   const std::size_t count = std::size_t{stored.width} * stored.height;
   if (stored.data.size() < count * stored.point_step) return fail("{}: is cut short; write it anew", name);
-  Cloud cloud;
-  cloud.points.reserve(count);
+  Points points;
+  points.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const char* point = reinterpret_cast<const char*>(stored.data.data()) + i * stored.point_step;
     Eigen::Vector3d p;
     for (std::size_t axis = 0; axis < 3; ++axis)
       p[static_cast<int>(axis)] = read_scalar(axes.at(axis).first, point + axes.at(axis).second, false);
-    if (p.cast<float>().allFinite()) cloud.points.emplace_back(p.cast<float>());
+    if (p.cast<float>().allFinite()) points.push_back(p);
   }
-  return cloud;
+  return points;
 }
 
-Result<Cloud> read_pcd(const std::filesystem::path& file) {
+Result<Points> read_pcd(const std::filesystem::path& file) {
   const std::string name = file.string();
   if (auto status = check_pcd_header(file); !status) return tl::unexpected(status.error());
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // our own line says it
@@ -78,9 +83,7 @@ Result<Cloud> read_pcd(const std::filesystem::path& file) {
   return points_of(stored, name);
 }
 
-}  // namespace
-
-Result<Cloud> read_cloud_file(const std::filesystem::path& file) {
+Result<Points> read_points(const std::filesystem::path& file) {
   const std::string name = file.string();
   std::string kind = file.extension().string();
   std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -89,10 +92,45 @@ Result<Cloud> read_cloud_file(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     return fail("{}: is no readable file; check the path", name);
-  auto cloud = kind == ".ply" ? read_ply(file) : read_pcd(file);
-  if (!cloud) return cloud;
-  if (cloud->empty()) return fail("{}: has no finite point; is it the right file?", name);
+  auto points = kind == ".ply" ? read_ply(file) : read_pcd(file);
+  if (!points) return points;
+  if (points->empty()) return fail("{}: has no finite point; is it the right file?", name);
+  return points;
+}
+
+Cloud cloud_about(const Points& points, const Eigen::Vector3d& origin) {
+  Cloud cloud;
+  cloud.points.reserve(points.size());
+  for (const Eigen::Vector3d& p : points) cloud.points.emplace_back((p - origin).cast<float>());
   return cloud;
+}
+
+/// In whole metres; (0, 0, 0) where that lies among the points or near them, a few strays aside.
+Eigen::Vector3d origin_of(const Points& points) {
+  Eigen::Vector3d middle, off;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    values.reserve(points.size());
+    for (const Eigen::Vector3d& p : points) values.push_back(p[axis]);
+    const double low = quantile(values, 0.02), high = quantile(values, 0.98);
+    middle[axis] = std::round((low + high) / 2);
+    off[axis] = std::max({low, -high, 0.0});
+  }
+  return off.norm() > kFarOff_m ? middle : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+}  // namespace
+
+Result<Cloud> read_cloud_file(const std::filesystem::path& file) {
+  return read_points(file).map(
+      [](const Points& points) { return cloud_about(points, Eigen::Vector3d::Zero()); });
+}
+
+Result<PlacedCloud> read_placed_cloud(const std::filesystem::path& file) {
+  return read_points(file).map([](const Points& points) {
+    const Eigen::Vector3d origin = origin_of(points);
+    return PlacedCloud{cloud_about(points, origin), origin};
+  });
 }
 
 }  // namespace liloc::toolbox

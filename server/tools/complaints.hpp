@@ -43,11 +43,11 @@ inline constexpr std::array kComplaints{
     Complaint{"slow", Verdict::doubtful, "{server}: {lidar} is slow, {hz:.1f} Hz",
               "under half of its rate_hz in site.json: look at its network, or correct rate_hz"},
     Complaint{"waiting", Verdict::bad, "{server}: {lidar} has sent nothing yet",
-              "does its driver run, send rt/{lidar}/depth/image_rect_raw in this domain, and name the server's "
+              "does its driver run, send rt/{topic}/depth/image_rect_raw in this domain, and name the server's "
               "host as "
               "peer?"},
     Complaint{"silent", Verdict::bad, "{server}: {lidar} is silent",
-              "does its driver run, send rt/{lidar}/depth/image_rect_raw in this domain, and name the server's "
+              "does its driver run, send rt/{topic}/depth/image_rect_raw in this domain, and name the server's "
               "host as "
               "peer?"},
     Complaint{"malformed", Verdict::bad, "{server}: {lidar} sends malformed frames",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "common/base/ros_name.hpp"
 #include "common/command/text.hpp"
 #include "server/tools/complaints.hpp"
 
@@ -27,9 +28,9 @@ constexpr Of<complaint("state_unknown")> kStateUnknown;
 Finding check_lidar(const wire::LidarHealth& lidar, const std::string& server) {
   const auto about = [&]<std::size_t Which>(std::integral_constant<std::size_t, Which>) {
     return finding<Which>(
-        fmt::arg("server", server), fmt::arg("lidar", lidar.id), fmt::arg("hz", lidar.measured_hz),
-        fmt::arg("error", lidar.last_error), fmt::arg("returns", 100 * lidar.returns),
-        fmt::arg("range", lidar.range_m),
+        fmt::arg("server", server), fmt::arg("lidar", lidar.id), fmt::arg("topic", ros_name(lidar.id)),
+        fmt::arg("hz", lidar.measured_hz), fmt::arg("error", lidar.last_error),
+        fmt::arg("returns", 100 * lidar.returns), fmt::arg("range", lidar.range_m),
         fmt::arg("usual",
                  lidar.usual_range_m > 0 ? fmt::format(", it used to be {:.3g} m", lidar.usual_range_m) : ""),
         fmt::arg("offset", std::abs(lidar.clock_offset_s)),

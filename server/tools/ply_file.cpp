@@ -12,7 +12,8 @@
 namespace liloc::toolbox {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{4} << 30;  // by hand
+constexpr std::size_t kLargestFile = std::size_t{4} << 30;   // by hand
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // of UTF-8: an editor saved an ASCII file
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Takes one number after the other off the data; past the end it is not sound any more.
@@ -90,22 +91,23 @@ Status check_room(const PlyElement& element, const Values& values) {
   return fail("claims {} of element {} in {} bytes", element.count, element.name.substr(0, 40), values.left());
 }
 
-Result<Cloud> read_vertices(const PlyElement& vertex, Values& values) {
+Result<Points> read_vertices(const PlyElement& vertex, Values& values) {
   const auto axes = axes_of(vertex);
   if (!axes) return tl::unexpected(axes.error());
-  Cloud cloud;
-  cloud.points.reserve(vertex.count);
+  Points points;
+  points.reserve(vertex.count);
   std::vector<double> row(vertex.properties.size());
   for (std::size_t i = 0; i < vertex.count; ++i) {
     for (std::size_t k = 0; k < row.size(); ++k) row[k] = values.next(vertex.properties[k].type);
     if (!values.sound()) return fail("has no sound vertex {} of {}", i + 1, vertex.count);
-    const Eigen::Vector3f p = Eigen::Vector3d(row[(*axes)[0]], row[(*axes)[1]], row[(*axes)[2]]).cast<float>();
-    if (p.allFinite()) cloud.points.push_back(p);
+    const Eigen::Vector3d p(row[(*axes)[0]], row[(*axes)[1]], row[(*axes)[2]]);
+    if (p.cast<float>().allFinite()) points.push_back(p);
   }
-  return cloud;
+  return points;
 }
 
-Result<Cloud> parse(std::string_view bytes) {
+Result<Points> parse(std::string_view bytes) {
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   const auto header = parse_ply_header(bytes);
   if (!header) return tl::unexpected(header.error());
   Values values(bytes.substr(header->bytes), header->format);
@@ -122,12 +124,12 @@ Result<Cloud> parse(std::string_view bytes) {
 
 }  // namespace
 
-Result<Cloud> read_ply(const std::filesystem::path& file) {
+Result<Points> read_ply(const std::filesystem::path& file) {
   const auto bytes = read_file(file, kLargestFile);
   if (!bytes) return tl::unexpected(bytes.error());
-  auto cloud = parse(*bytes);
-  if (!cloud) return fail("{}: {}; write it anew", file.string(), cloud.error().message);
-  return cloud;
+  auto points = parse(*bytes);
+  if (!points) return fail("{}: {}; write it anew", file.string(), points.error().message);
+  return points;
 }
 
 }  // namespace liloc::toolbox

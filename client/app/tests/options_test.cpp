@@ -31,6 +31,16 @@ TEST(ClientCommandLine, NamesFollowTheId) {
   EXPECT_EQ(parsed.options->client.local, client::Local::cloud);
 }
 
+TEST(ClientCommandLine, AHyphenOfTheIdIsAnUnderscoreInTopics) {
+  const char* const arguments[] = {"liloc-client", "--id", "robot-1"};
+  int exit_code = 0;
+  const auto options = parse_arguments(3, arguments, exit_code);
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->client.id, "robot-1");
+  EXPECT_EQ(options->topics.depth, "rt/robot_1/depth/image_rect_raw");
+  EXPECT_EQ(options->ros.names.odometry, "rt/robot_1/odom");
+}
+
 TEST(ClientCommandLine, NamesCanBeGiven) {
   const auto parsed = parse({"--depth-topic", "/cam/depth", "--map-frame", "world", "--odom-frame", "base_odom",
                              "--diagnostics-topic", "diag", "--tf-ahead-ms", "200", "--tf-max-speed", "0.5"});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/base/log.hpp"
 #include "common/testing/walk.hpp"
 
 namespace liloc {
@@ -105,6 +106,31 @@ TEST(ExternalOdometry, TheCovariancesGrowthIsTheMotionsError) {
   static_cast<void>(odometry.step(at(0.2)));
   odometry.mark();
   EXPECT_NEAR(odometry.step(at(1.0)).sd_m, std::sqrt(8e-4), 1e-9);
+}
+
+TEST(ExternalOdometry, WhatJumpsWithEachSampleIsToldInOneLineAndAsAProblem) {
+  int lines = 0;
+  log::set_sink([&](log::Level, std::string_view) { ++lines; });
+  ExternalOdometry odometry({});
+  for (int i = 0; i < 100; ++i) {  // 0.5 m/s in millimetres, at 50 Hz
+    Pose T_odom_base = Pose::Identity();
+    T_odom_base.translation().x() = 10.0 * i;
+    ASSERT_TRUE(odometry.add({at(0.02 * i), T_odom_base, std::nullopt}));
+  }
+  log::set_sink({});
+  EXPECT_EQ(lines, 1);
+  EXPECT_NE(odometry.problem().find("10.00 m in 0.02 s"), std::string::npos) << odometry.problem();
+  Pose T_odom_base = Pose::Identity();
+  T_odom_base.translation().x() = 990;
+  for (int i = 100; i < 150; ++i) ASSERT_TRUE(odometry.add({at(0.02 * i), T_odom_base, std::nullopt}));
+  EXPECT_EQ(odometry.problem(), "") << "it is mended";
+}
+
+TEST(ExternalOdometry, OneJumpIsNoProblem) {
+  Wheels wheels;
+  wheels.drive(0, 1, 50);
+  wheels.drive(1, 2, 50, Pose(Eigen::Translation3d(3, 0, 0)));
+  EXPECT_EQ(wheels.odometry.problem(), "");
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ TEST(CameraInfo, TheRectifiedImageCountsWhereItIsSet) {
   ASSERT_TRUE(camera) << camera.error().message;
   EXPECT_EQ(camera->fy, 402);
   EXPECT_EQ(camera->cx, 300);
+  info.k = {};
+  EXPECT_TRUE(camera_of(info)) << "the raw image has no intrinsics, this one has";
 }
 
 TEST(CameraInfo, ARegionIsCutOutBeforeItsPixelsAreBinned) {

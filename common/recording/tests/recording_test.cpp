@@ -54,6 +54,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadSite{"text_lidars", R"({"global_lidars":"all"})", "global_lidars"},
         BadSite{"number_lidar", site_of("7"), "global_lidars[0]"},
         BadSite{"twice", site_of(kLidar + "," + kLidar), "global_lidars[1].id 'c0' is used twice"},
+        BadSite{"twin_topics", site_of(changed(kLidar, "c0", "c-0") + "," + changed(kLidar, "c0", "c_0")),
+                "global_lidars[1].id 'c_0' is used twice"},
         BadSite{"id", site_of(changed(kLidar, "c0", "../etc")), "global_lidars[0].id"},
         BadSite{"no_fx", site_of(changed(kLidar, "\"fx\":45,", "")), "global_lidars[0].fx is missing"},
         BadSite{"zero_fx", site_of(changed(kLidar, "\"fx\":45", "\"fx\":0")), "global_lidars[0].fx is 0"},
@@ -70,9 +72,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "global_lidars[0].fx is 0.5: 64 pixels would see 178 deg"},
         BadSite{"vast_fy", site_of(changed(kLidar, "\"fy\":46", "\"fy\":1e12")), "global_lidars[0].fy is 1"},
         BadSite{"metres_as_scale", site_of(changed(kLidar, "0.001", "1.0")), "depth_scale is 1"},
-        BadSite{"a_kilometre",
-                site_of(kLidar + "," + changed(changed(kLidar, "c0", "c1"), "1,2,3", "1001,2,3")),
-                "c1 hangs 1000 m from the middle one; a site spans at most"},
+        BadSite{
+            "over_a_kilometre",
+            site_of(kLidar + "," + changed(changed(kLidar, "c0", "c1"), "1,2,3", "1021,2,3")),
+            "global_lidars[1].T_map_sensor.translation: c1 hangs 1020 m from the middle one, must be at most"},
         BadSite{"sixty_kilometres",
                 site_of(kLidar + "," + changed(changed(kLidar, "c0", "c1"), "1,2,3", "1,60000,3")),
                 "global_lidars[1].T_map_sensor.translation"},
@@ -84,6 +87,15 @@ INSTANTIATE_TEST_SUITE_P(
         BadSite{"far", site_of(changed(kLidar, "1,2,3", "1,2,3e9")), "T_map_sensor.translation"},
         BadSite{"frame", changed(site_of(kLidar), "\"map\"", "\"\\n\""), "world_frame"}),
     [](const auto& bad) { return bad.param.name; });
+
+TEST(Site, RoomsMayLieFarApart) {
+  const TemporaryFolder folder;
+  const std::string far = changed(changed(kLidar, "c0", "c1"), "1,2,3", "901,402,3");
+  folder.put("site.json", site_of(kLidar + "," + far));
+  const auto site = read_site(folder.path() / "site.json");
+  ASSERT_TRUE(site) << site.error().message;
+  EXPECT_EQ(site->global_lidars.size(), 2U);
+}
 
 TEST(Hostile, AbsentFilesAndFoldersAreNamed) {
   const TemporaryFolder folder;

@@ -91,8 +91,8 @@ struct FieldLayers::Stamp {
 };
 
 FieldLayers::FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& views,
-                         const FieldOptions& options) {
-  lay_out(cloud_map, options);
+                         const FieldOptions& options, const Region& region) {
+  lay_out(cloud_map, options, region);
   if (size_.isZero()) return;
   near_.assign((kAny + 1) * plane_cells(), 0);
   through_.assign(plane_cells(), 0);
@@ -102,13 +102,13 @@ FieldLayers::FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& v
 }
 
 FieldLayers::FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& views,
-                         const FieldOptions& options, const Earlier& earlier) {
-  lay_out(cloud_map, options);
+                         const FieldOptions& options, const Earlier& earlier, const Region& region) {
+  lay_out(cloud_map, options, region);
   const FieldLayers& before = earlier.layers;
   const bool same_cells =
       size_ == before.size_ && origin_ == before.origin_ && cell_ == before.cell_ && !size_.isZero();
   if (!same_cells || !earlier.change.little(cloud_map.size())) {
-    *this = FieldLayers(cloud_map, views, options);
+    *this = FieldLayers(cloud_map, views, options, region);
     return;
   }
   near_ = before.near_;
@@ -129,10 +129,11 @@ FieldLayers::FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& v
       count(views[i], same_sensors ? &earlier.views[i] : nullptr);
 }
 
-void FieldLayers::lay_out(const Cloud& cloud_map, const FieldOptions& options) {
+void FieldLayers::lay_out(const Cloud& cloud_map, const FieldOptions& options, const Region& region) {
+  region_ = region;
   Eigen::AlignedBox3d box;
   for (const auto& p : cloud_map.points)
-    if (p.allFinite()) box.extend(p.cast<double>());
+    if (holds(region, p)) box.extend(p.cast<double>());
   if (box.isEmpty()) return;
   const auto volume = [&](double cell_m) { return (box.sizes().array() + 4 * cell_m).prod(); };
   const double cells = volume(options.cell_m) / std::pow(options.cell_m, 3);
@@ -146,7 +147,7 @@ void FieldLayers::lay_out(const Cloud& cloud_map, const FieldOptions& options) {
 }
 
 void FieldLayers::add(const Cloud& cloud_map, std::size_t i, Stamp* stamp) {
-  if (!cloud_map.points[i].allFinite()) return;
+  if (!holds(region_, cloud_map.points[i])) return;
   stamp->take(*this, cloud_map.points[i]);
   const Eigen::Vector3f* normal = cloud_map.has_normals() ? &cloud_map.normals[i] : nullptr;
   for (int plane = 0; plane <= kAny; ++plane) {
@@ -158,6 +159,7 @@ void FieldLayers::add(const Cloud& cloud_map, std::size_t i, Stamp* stamp) {
 }
 
 void FieldLayers::forget(const Eigen::Vector3f& p_map, Stamp* stamp) {
+  if (!holds(region_, p_map)) return;
   stamp->take(*this, p_map);
   for (int plane = 0; plane <= kAny; ++plane)
     for (std::size_t k = 0; k < stamp->count; ++k)
@@ -165,6 +167,8 @@ void FieldLayers::forget(const Eigen::Vector3f& p_map, Stamp* stamp) {
 }
 
 void FieldLayers::count(const SightView& view, const SightView* before) {
+  const Eigen::AlignedBox3f box(origin_, origin_ + size_.cast<float>() * static_cast<float>(cell_));
+  if (!view.reaches(box) && (before == nullptr || !before->reaches(box))) return;
   const auto cell = static_cast<float>(cell_), tolerance = static_cast<float>(0.5 * cell_ + 0.03);
   const auto centre = [&](int axis, int at) { return origin_[axis] + (static_cast<float>(at) + 0.5F) * cell; };
   const auto cells = static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y());

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/geometry/cloud.hpp"
+#include "common/geometry/regions.hpp"
 #include "common/registration/points/cloud_change.hpp"
 #include "common/registration/sight/sight.hpp"
 
@@ -25,8 +26,10 @@ class FieldLayers {
   static constexpr int kAny = 10;  ///< the plane of surfaces that face anywhere
 
   FieldLayers() = default;
-  /// `cloud` in the map frame, at most a cell apart on surfaces; without normals it faces everywhere.
-  FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& views, const FieldOptions& options);
+  /// `cloud` in the map frame, at most a cell apart on surfaces; without normals it faces everywhere. Only what
+  /// lies in the region counts.
+  FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& views, const FieldOptions& options,
+              const Region& region = everywhere());
 
   /// The room that other layers were made of, and what became of its cloud.
   struct Earlier {
@@ -36,7 +39,7 @@ class FieldLayers {
   };
   /// The same layers, to the last bit, sooner.
   FieldLayers(const Cloud& cloud_map, const std::vector<SightView>& views, const FieldOptions& options,
-              const Earlier& earlier);
+              const Earlier& earlier, const Region& region = everywhere());
 
   [[nodiscard]] bool empty() const { return near_.empty(); }
   [[nodiscard]] double cell_m() const { return cell_; }
@@ -57,11 +60,12 @@ class FieldLayers {
                static_cast<std::size_t>(size_.x()) +
            static_cast<std::size_t>(x);
   }
-  void lay_out(const Cloud& cloud_map, const FieldOptions& options);
+  void lay_out(const Cloud& cloud_map, const FieldOptions& options, const Region& region);
   void add(const Cloud& cloud_map, std::size_t i, Stamp* stamp);
   void forget(const Eigen::Vector3f& p_map, Stamp* stamp);
   void count(const SightView& view, const SightView* before);
 
+  Region region_;
   double cell_ = 0;
   float inverse_ = 1;
   Eigen::Vector3f origin_ = Eigen::Vector3f::Zero();

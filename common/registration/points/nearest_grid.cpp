@@ -46,33 +46,52 @@ LILOC_WIDE void find_cells(const Shape& shape, const PointRun& points, std::uint
 }  // namespace
 
 NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell_m, double reach_m) {
-  lay_out(points, cell_m, reach_m);
-  for (std::size_t i = 0; i < points.size(); ++i) stamp(points, i);
+  make(points, cell_m, reach_m, {});
 }
 
 NearestGrid::NearestGrid(const std::vector<Eigen::Vector3f>& points, double cell_m, double reach_m,
                          const NearestGrid& before, const CloudChange& change) {
-  lay_out(points, cell_m, reach_m);
-  const bool same_cells = !blocks_.empty() && origin_ == before.origin_ && extent_ == before.extent_ &&
-                          cell_ == before.cell_ && reach_ == before.reach_;
-  if (!same_cells || !change.little(points.size())) {
-    for (std::size_t i = 0; i < points.size(); ++i) stamp(points, i);
+  make(points, cell_m, reach_m, {&before, &change});
+}
+
+void NearestGrid::make(const std::vector<Eigen::Vector3f>& points, double cell_m, double reach_m,
+                       const Earlier& earlier) {
+  const std::vector<Region> regions = regions_of(points, std::max(kFarApart_m, 4 * reach_m));
+  const bool same_regions = earlier.grid != nullptr && earlier.grid->beyond_.size() + 1 == regions.size();
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    NearestGrid& grid = k == 0 ? *this : beyond_.emplace_back();
+    const NearestGrid* before = same_regions ? k == 0 ? earlier.grid : &earlier.grid->beyond_[k - 1] : nullptr;
+    grid.make_region(points, regions[k], cell_m, reach_m, {before, earlier.change});
+  }
+}
+
+void NearestGrid::make_region(const std::vector<Eigen::Vector3f>& points, const Region& region, double cell_m,
+                              double reach_m, const Earlier& earlier) {
+  lay_out(points, region, cell_m, reach_m);
+  const NearestGrid* before = earlier.grid;
+  const bool same_cells = before != nullptr && !blocks_.empty() && origin_ == before->origin_ &&
+                          extent_ == before->extent_ && cell_ == before->cell_ && reach_ == before->reach_;
+  if (!same_cells || !earlier.change->little(points.size())) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (holds(region, points[i])) stamp(points, i);
     return;
   }
-  take_over(before, change.now);
-  const VoxelMask touched = VoxelMask::covering(change.gone, 2 * static_cast<double>(reach_));
+  take_over(*before, earlier.change->now);
+  const VoxelMask touched = VoxelMask::covering(earlier.change->gone, 2 * static_cast<double>(reach_));
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (touched.at(points[i])) fill_left(points, i);
+    if (holds(region, points[i]) && touched.at(points[i])) fill_left(points, i);
   for (Block& block : cells_)
     for (std::int32_t& held : block)
       if (held <= kLeft) held = held == kLeft ? kNone : kLeft - 1 - held;
-  for (const std::uint32_t i : change.fresh) stamp(points, i);
+  for (const std::uint32_t i : earlier.change->fresh)
+    if (holds(region, points[i])) stamp(points, i);
 }
 
-void NearestGrid::lay_out(const std::vector<Eigen::Vector3f>& points, double cell_m, double reach_m) {
+void NearestGrid::lay_out(const std::vector<Eigen::Vector3f>& points, const Region& region, double cell_m,
+                          double reach_m) {
   Eigen::AlignedBox3f box;
   for (const auto& p : points)
-    if (p.allFinite()) box.extend(p);
+    if (holds(region, p)) box.extend(p);
   if (box.isEmpty()) return;
   const Eigen::Vector3d size = (box.sizes().array() + 2 * static_cast<float>(reach_m)).cast<double>();
   const double blocks = size.prod() / std::pow(8 * cell_m, 3);
@@ -86,6 +105,12 @@ void NearestGrid::lay_out(const std::vector<Eigen::Vector3f>& points, double cel
   extent_ = cells.cast<float>();
   block_count_ = (cells.array() + 7) / 8;
   blocks_.assign(static_cast<std::size_t>(block_count_.cast<std::int64_t>().prod()) + 1, kNone);
+}
+
+std::int32_t NearestGrid::nearest_beyond(const Eigen::Vector3f& p) const {
+  for (const NearestGrid& grid : beyond_)
+    if (const std::int32_t found = grid.nearest(p); found != kNone) return found;
+  return kNone;
 }
 
 void NearestGrid::nearest(const PointRun& points, const Eigen::Vector3f& shift, std::int32_t* indices) const {
@@ -110,6 +135,10 @@ void NearestGrid::nearest(const PointRun& points, const Eigen::Vector3f& shift, 
       indices[begin + i] = block == kNone ? kNone : cells_[static_cast<std::size_t>(block)][cells[i]];
     }
   }
+  if (beyond_.empty()) return;
+  for (std::size_t i = 0; i < points.count; ++i)
+    if (indices[i] == kNone)
+      indices[i] = nearest_beyond(Eigen::Vector3f(points.x[i], points.y[i], points.z[i]) + shift);
 }
 
 /// What the grid before held, by the indices of now; what is gone leaves its cells to others. Blocks that held

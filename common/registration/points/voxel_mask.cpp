@@ -11,7 +11,22 @@ namespace {
 // By hand; the second bounds memory.
 constexpr double kCell_m = 0.08, kMostCells = 4e6;
 constexpr double kHalfDiagonal = 0.8661;  // of a cell; rounded up
+constexpr double kLeastApart_m = 1;       // a quarter of what is far, where that is needed; by hand
 constexpr float kRounding_m = 1e-3F;      // above what floats round indoors; by hand
+
+Eigen::AlignedBox3f box_of(const std::vector<Eigen::Vector3f>& points, const Region& region) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : points)
+    if (holds(region, p)) box.extend(p);
+  return box;
+}
+
+/// That cover the box and what is in reach; 0 of an empty one.
+double cells_of(const Eigen::AlignedBox3f& box, double reach_m) {
+  if (box.isEmpty()) return 0;
+  const auto reach = static_cast<float>(reach_m);
+  return (box.sizes().array() + 2 * reach).cast<double>().prod() / std::pow(kCell_m, 3);
+}
 
 }  // namespace
 
@@ -23,12 +38,21 @@ VoxelMask VoxelMask::covering(const std::vector<Eigen::Vector3f>& points, double
 }
 
 VoxelMask::VoxelMask(const std::vector<Eigen::Vector3f>& points, double reach_m, Margin margin) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : points)
-    if (p.allFinite()) box.extend(p);
+  const double cells = cells_of(box_of(points, everywhere()), reach_m);
+  const std::vector<Region> regions = cells <= kMostCells
+                                          ? std::vector{everywhere()}
+                                          : regions_of(points, 4 * std::max(reach_m, kLeastApart_m));
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    (k == 0 ? *this : beyond_.emplace_back()).cover(points, regions[k], reach_m, margin);
+}
+
+/// One grid over the points of a region.
+void VoxelMask::cover(const std::vector<Eigen::Vector3f>& points, const Region& region, double reach_m,
+                      Margin margin) {
+  const Eigen::AlignedBox3f box = box_of(points, region);
   if (box.isEmpty()) return;
   auto reach = static_cast<float>(reach_m);
-  const double cells = (box.sizes().array() + 2 * reach).cast<double>().prod() / std::pow(kCell_m, 3);
+  const double cells = cells_of(box, reach_m);
   const double cell_m = kCell_m * std::cbrt(std::max(1.0, cells / kMostCells));
   inverse_ = static_cast<float>(1.0 / cell_m);
   if (margin == Margin::cell) reach += static_cast<float>(kHalfDiagonal * cell_m) + kRounding_m;
@@ -38,7 +62,11 @@ VoxelMask::VoxelMask(const std::vector<Eigen::Vector3f>& points, double reach_m,
   extent_ = size_.cast<float>();
   cells_.assign(index({0, 0, size_.z()}), 0);
   for (const Eigen::Vector3f& p : points)
-    if (p.allFinite()) stamp((p - origin_).array(), reach);
+    if (holds(region, p)) stamp((p - origin_).array(), reach);
+}
+
+bool VoxelMask::at_beyond(const Eigen::Vector3f& p) const {
+  return std::ranges::any_of(beyond_, [&](const VoxelMask& mask) { return mask.at(p); });
 }
 
 /// A ball, row by row: the cells whose centres lie within reach.

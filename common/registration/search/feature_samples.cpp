@@ -86,7 +86,7 @@ std::optional<Pose3f> from_two(const FeatureMatch& a, const FeatureMatch& b) {
 /// One run over one set of matches.
 class Sampler {
  public:
-  Sampler(const ScoreField& field, const std::vector<Eigen::Vector3f>& points,
+  Sampler(const ScoreFields& field, const std::vector<Eigen::Vector3f>& points,
           const std::vector<FeatureMatch>& matches, const SampleOptions& options)
       : field_(field), points_(points), matches_(matches), options_(options), rng_(options.seed) {
     if (options.sample == Sample::two_normals)
@@ -156,7 +156,7 @@ class Sampler {
     floor_ = static_cast<float>(best_.front().score) * ScoreField::kSurface;
   }
 
-  const ScoreField& field_;
+  const ScoreFields& field_;
   const std::vector<Eigen::Vector3f>& points_;
   const std::vector<FeatureMatch>& matches_;
   const SampleOptions& options_;
@@ -168,7 +168,7 @@ class Sampler {
 
 }  // namespace
 
-std::vector<Candidate> sample_poses(const ScoreField& field, const std::vector<Eigen::Vector3f>& points,
+std::vector<Candidate> sample_poses(const ScoreFields& field, const std::vector<Eigen::Vector3f>& points,
                                     const std::vector<FeatureMatch>& matches, const SampleOptions& options) {
   if (matches.size() < 3) return {};
   return Sampler(field, points, matches, options).run();

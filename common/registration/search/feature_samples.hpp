@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/registration/field/score_field.hpp"
+#include "common/registration/field/score_fields.hpp"
 #include "common/registration/search/candidate.hpp"
 
 namespace liloc {
@@ -31,7 +31,7 @@ struct SampleOptions {
 
 /// RANSAC: poses of random samples of the matches, scored by `points` on the target's field with an early stop,
 /// and for two normals by how many matches agree too. The best `keep`, in no order. Pure.
-[[nodiscard]] std::vector<Candidate> sample_poses(const ScoreField& field,
+[[nodiscard]] std::vector<Candidate> sample_poses(const ScoreFields& field,
                                                   const std::vector<Eigen::Vector3f>& points,
                                                   const std::vector<FeatureMatch>& matches,
                                                   const SampleOptions& options);

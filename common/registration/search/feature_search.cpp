@@ -22,7 +22,7 @@ std::vector<FeatureMatch> matches_in(const Described& query, const Described& ta
   for (std::size_t i = 0; i < query.features.size(); ++i) {
     FeatureBlock::Nearest best;
     for (const std::uint32_t tile : cell)
-      if (nearest[tile][i].closeness > best.closeness) best = nearest[tile][i];
+      if (!nearest[tile].empty() && nearest[tile][i].closeness > best.closeness) best = nearest[tile][i];
     const std::uint32_t s = query.features.index[i], t = target.features.index[best.column];
     matches.push_back(
         {query.cloud.points[s], target.cloud.points[t], query.cloud.normals[s], target.cloud.normals[t]});
@@ -105,8 +105,11 @@ std::vector<Candidate> feature_search(const Target& target, const Described& tar
   const double cell_m = options.grid ? options.cell_m : 1e6;
   const auto [tiles, cells] = partition(target_described, cell_m, query_described.features.size() / 8);
   const int iterations = std::max(1000, options.iterations / static_cast<int>(cells.size()));
-  std::vector<Nearest> nearest(tiles.size(), Nearest(query_described.features.size()));
+  std::vector<Nearest> nearest(
+      tiles.size());  // empty where a tile is: they lie between rooms that are far apart
   for_each_index(tiles.size(), options.threads, [&, &tiles = tiles](std::size_t i) {
+    if (tiles[i].empty()) return;
+    nearest[i].resize(query_described.features.size());
     FeatureBlock(target_described.features, tiles[i]).improve(query_described.features, &nearest[i]);
   });
   std::vector<std::vector<Candidate>> found(cells.size());

@@ -187,6 +187,14 @@ std::array<HalfSpace, 6> SightView::bounds(const Eigen::Isometry3f& T_sensor_poi
   return spaces;
 }
 
+bool SightView::reaches(const Eigen::AlignedBox3f& box_world) const {
+  if (empty()) return false;
+  const float x = std::max(cx_, width_f_ - cx_) / fx_, y = std::max(cy_, height_f_ - cy_) / fy_;
+  const float reach_m = farthest_ * std::sqrt(1 + x * x + y * y);  // into a corner of the view
+  const Eigen::Vector3f eye_world = T_sensor_world_.inverse().translation();
+  return box_world.squaredExteriorDistance(eye_world) <= reach_m * reach_m;
+}
+
 bool SightView::same_sensor(const SightView& other) const {
   return T_sensor_world_.matrix() == other.T_sensor_world_.matrix() && width_ == other.width_ &&
          height_ == other.height_ && fx_ == other.fx_ && fy_ == other.fy_ && cx_ == other.cx_ &&

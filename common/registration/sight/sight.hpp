@@ -1,5 +1,6 @@
 #pragma once
 // Free space seen along lines of sight: a depth sensor looks through empty space up to what it measures.
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -75,6 +76,9 @@ class SightView {
   /// for which that was so `before`, in a view of the same sensor, if any.
   void count_through(const PointRun& points_world, float tolerance_m, const SightView* before,
                      std::uint8_t* counts) const;
+
+  /// Whether anything in the box (world frame) may lie before what was measured; may err towards yes.
+  [[nodiscard]] bool reaches(const Eigen::AlignedBox3f& box_world) const;
 
   /// Whether both are of one sensor at one place, and whether it also measured the same.
   [[nodiscard]] bool same_sensor(const SightView& other) const;

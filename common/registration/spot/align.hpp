@@ -22,6 +22,7 @@ struct AlignResult {
   double confidence =
       0;  ///< probability that the pose is right: off by less than 0.2 m (RMSE over what overlaps)
   bool trusted = false;  ///< confidence is at least 1 - AlignOptions::risk
+  bool found = false;    ///< or no pose came into question, and all the above says nothing
 };
 
 /// A pose that is not ruled out, refined.

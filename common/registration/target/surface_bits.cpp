@@ -19,7 +19,7 @@ std::uint64_t cell_of(const Eigen::Vector3f& p_map) {
 }  // namespace
 
 void SurfaceBits::add(const Target& target, const Query& query, const Pose& T_map_sensor) {
-  const ScoreField& field = target->field_coarse();
+  const ScoreFields& field = target->field_coarse();
   const Eigen::Isometry3f T = T_map_sensor.cast<float>();
   const Cloud& cloud = query.medium;
   if (!cloud.has_normals() || !target->coarse.has_normals()) return;

@@ -121,24 +121,31 @@ Surfaces::Surfaces(const Cloud& cloud_map, const Cloud& coarse_map, std::vector<
 
 void Surfaces::build_fields(const Surfaces* before, const CloudChange* change) const {
   std::call_once(once_, [&] {
-    const auto layers = [&](const FieldOptions& options, const FieldLayers Surfaces::*member) {
-      if (before == nullptr) return FieldLayers(coarse, views_, options);
-      return FieldLayers(coarse, views_, options, {before->*member, before->views_, *change});
+    const std::vector<Region> regions = regions_of(coarse.points, kFarApart_m);
+    const auto layers = [&](const FieldOptions& options, const std::vector<FieldLayers> Surfaces::*member) {
+      std::vector<FieldLayers> all;
+      for (std::size_t k = 0; k < regions.size(); ++k)
+        if (before == nullptr || (before->*member).size() != regions.size())
+          all.emplace_back(coarse, views_, options, regions[k]);
+        else
+          all.emplace_back(coarse, views_, options,
+                           FieldLayers::Earlier{(before->*member)[k], before->views_, *change}, regions[k]);
+      return all;
     };
     layers_coarse_ = layers(kCoarseField, &Surfaces::layers_coarse_);
     layers_fine_ = layers(kFineField, &Surfaces::layers_fine_);
-    field_coarse_ = ScoreField(layers_coarse_, kCoarseField);
-    field_fine_ = ScoreField(layers_fine_, kFineField);
+    field_coarse_ = ScoreFields(layers_coarse_, kCoarseField);
+    field_fine_ = ScoreFields(layers_fine_, kFineField);
     has_fields_ = true;
   });
 }
 
-const ScoreField& Surfaces::field_coarse() const {
+const ScoreFields& Surfaces::field_coarse() const {
   build_fields(nullptr, nullptr);
   return field_coarse_;
 }
 
-const ScoreField& Surfaces::field_fine() const {
+const ScoreFields& Surfaces::field_fine() const {
   build_fields(nullptr, nullptr);
   return field_fine_;
 }
@@ -151,7 +158,7 @@ DynamicRegions::DynamicRegions(std::shared_ptr<const Surfaces> surfaces, const s
       map_points(map_points_of(surfaces->coarse, stale)),
       surfaces_(std::move(surfaces)) {}
 
-const ScoreField& DynamicRegions::field_coarse() const {
+const ScoreFields& DynamicRegions::field_coarse() const {
   if (mask.empty()) return surfaces_->field_coarse();
   std::call_once(once_, [this] {
     field_coarse_ = surfaces_->field_coarse();

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/geometry/cloud.hpp"
-#include "common/registration/field/score_field.hpp"
+#include "common/registration/field/score_fields.hpp"
 #include "common/registration/points/nearest_grid.hpp"
 #include "common/registration/points/voxel_mask.hpp"
 #include "common/registration/sight/map_points.hpp"
@@ -33,8 +33,8 @@ class Surfaces {
 
   /// What a device point is worth at each place, at 0.2 m and at 0.1 m: for searches. The first caller builds
   /// them.
-  [[nodiscard]] const ScoreField& field_coarse() const;
-  [[nodiscard]] const ScoreField& field_fine() const;
+  [[nodiscard]] const ScoreFields& field_coarse() const;
+  [[nodiscard]] const ScoreFields& field_fine() const;
 
  private:
   struct Changes;
@@ -47,8 +47,8 @@ class Surfaces {
   const std::vector<SightView> views_;
   mutable std::once_flag once_;
   mutable std::atomic<bool> has_fields_ = false;
-  mutable FieldLayers layers_coarse_, layers_fine_;
-  mutable ScoreField field_coarse_, field_fine_;
+  mutable std::vector<FieldLayers> layers_coarse_, layers_fine_;  ///< by region
+  mutable ScoreFields field_coarse_, field_fine_;
 };
 
 /// Where the ceiling's word does not count at this moment, because somebody moves there or has just left.
@@ -64,12 +64,12 @@ class DynamicRegions {
   const MapPoints map_points;             ///< the same points for the judge
 
   /// The room's, to which the air around whoever moves is unknown. The first caller makes it.
-  [[nodiscard]] const ScoreField& field_coarse() const;
+  [[nodiscard]] const ScoreFields& field_coarse() const;
 
  private:
   const std::shared_ptr<const Surfaces> surfaces_;
   mutable std::once_flag once_;
-  mutable ScoreField field_coarse_;
+  mutable ScoreFields field_coarse_;
 };
 
 /// What a spot is registered against: surfaces, which many moments share, and what the ceiling sees right now.
@@ -83,7 +83,7 @@ struct Target {
   [[nodiscard]] const VoxelMask* dynamic_mask() const {
     return dynamic && !dynamic->mask.empty() ? &dynamic->mask : nullptr;
   }
-  [[nodiscard]] const ScoreField& field_coarse() const {
+  [[nodiscard]] const ScoreFields& field_coarse() const {
     return dynamic ? dynamic->field_coarse() : surfaces->field_coarse();
   }
 };

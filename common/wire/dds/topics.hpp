@@ -2,6 +2,8 @@
 // Private to common/wire: names of topics and partitions.
 #include <string>
 
+#include "common/base/ros_name.hpp"
+
 namespace liloc::wire {
 
 inline constexpr const char* kRequestTopic = "liloc/spot_request";
@@ -14,24 +16,24 @@ inline std::string client_partition(const std::string& client_id) {
   return kClientPrefix + client_id;
 }
 
-/// ROS 2 puts rt/ before a topic's name.
+/// ROS 2 puts rt/ before a topic's name; a hyphen of the id is an underscore there.
 inline std::string depth_topic(const std::string& id) {
-  return "rt/" + id + "/depth/image_rect_raw";
+  return "rt/" + ros_name(id) + "/depth/image_rect_raw";
 }
 inline std::string camera_info_topic(const std::string& id) {
-  return "rt/" + id + "/depth/camera_info";
+  return "rt/" + ros_name(id) + "/depth/camera_info";
 }
 inline std::string points_topic(const std::string& id) {
-  return "rt/" + id + "/points";
+  return "rt/" + ros_name(id) + "/points";
 }
 inline std::string imu_topic(const std::string& id) {
-  return "rt/" + id + "/imu";
+  return "rt/" + ros_name(id) + "/imu";
 }
 inline std::string pose_topic(const std::string& id) {
-  return "rt/" + id + "/pose";
+  return "rt/" + ros_name(id) + "/pose";
 }
 inline std::string odometry_topic(const std::string& id) {
-  return "rt/" + id + "/odom";
+  return "rt/" + ros_name(id) + "/odom";
 }
 inline constexpr const char* kTfTopic = "rt/tf";
 inline constexpr const char* kDiagnosticsTopic = "rt/diagnostics";

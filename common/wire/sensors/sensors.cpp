@@ -28,7 +28,7 @@ constexpr int kSamples = 256;  // more than a second at 200 Hz: none must be los
 
 Result<std::string> dds_topic(const std::string& ros_name) {
   const std::string name = ros_name.starts_with('/') ? ros_name.substr(1) : ros_name;
-  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '-'; };
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '/'; };
   if (name.empty() || name.size() > 200 || name.ends_with('/') || name.find("//") != std::string::npos ||
       !std::ranges::all_of(name, allowed))
     return fail("topic is \"{}\"; must be a ROS name of letters, digits, _ and /", ros_name);

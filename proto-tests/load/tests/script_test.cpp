@@ -17,6 +17,7 @@ TEST(LoadScript, EachFrameThatTellsEnoughHasARequestAndTheTruth) {
   LoadOptions options;
   options.paths = 1;
   options.path_s = 4;
+  options.codec = "voxel";
   double done = 0;
   const auto script = make_script(options, [&](double share) { done = share; });
   ASSERT_TRUE(script) << script.error().message;
@@ -34,8 +35,16 @@ TEST(LoadScript, EachFrameThatTellsEnoughHasARequestAndTheTruth) {
     if (!frame.request) continue;
     ++requests;
     EXPECT_FALSE(frame.request->lpc.bytes.empty());
+    EXPECT_EQ(frame.request->lpc.codec, CloudCodec::voxel);
   }
   EXPECT_GT(requests, path.size() * 9 / 10);
+}
+
+TEST(LoadOptions, CloudsTravelByACodecThatThereIs) {
+  LoadOptions options;
+  EXPECT_TRUE(options.validated());
+  options.codec = "zip";
+  EXPECT_THAT(options.validated().error().message, testing::HasSubstr("--codec is 'zip'"));
 }
 
 }  // namespace

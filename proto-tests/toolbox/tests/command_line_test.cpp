@@ -194,6 +194,39 @@ TEST_F(CommandLine, CloudsOfEveryCoordinateTypeAreRead) {
   }
 }
 
+TEST_F(CommandLine, CloudsInTheCoordinatesOfASurveyAreAligned) {
+  const Eigen::Vector3d survey(691'608.25, 5'334'765.5, 520.125);
+  auto near = corner_points();
+  for (Eigen::Vector3d& p : near) p -= Eigen::Vector3d(1, 1, 1);  // seen from inside
+  auto far = near;
+  for (Eigen::Vector3d& p : far) p += survey;
+  ASSERT_TRUE(write_file(path("far.ply"), test::ply_of<double>(far, "binary_little_endian", "double")));
+  ASSERT_TRUE(write_file(path("near.ply"), test::ply_of<double>(near, "ascii", "double")));
+  const auto T = [&](const char* source, const char* target) {
+    const Outcome outcome = liloc(fmt::format("align --gravity --json {} {}", path(source), path(target)));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+    return nlohmann::json::parse(outcome.out, nullptr, false)["T_target_source"];
+  };
+  const auto there = T("near.ply", "far.ply"), here = T("far.ply", "far.ply");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double wanted = survey[static_cast<int>(axis)];
+    EXPECT_NEAR(there[axis][3].get<double>(), wanted, 0.05) << there;
+    // A turn of a microradian about a place so far off moves it by metres: where the cloud ends counts.
+    const Eigen::RowVector3d row(here[axis][0], here[axis][1], here[axis][2]);
+    EXPECT_NEAR(row.dot(survey) + here[axis][3].get<double>(), wanted, 0.05) << here;
+  }
+}
+
+TEST_F(CommandLine, CloudsInMillimetresAreNamedAsSuch) {
+  auto millimetres = corner_points();
+  for (Eigen::Vector3d& p : millimetres) p *= 1000;
+  ASSERT_TRUE(
+      write_file(path("mm.ply"), test::ply_of<std::int16_t>(millimetres, "binary_big_endian", "short")));
+  ASSERT_TRUE(write_file(path("m.ply"), test::ply_of<float>(corner_points(), "ascii", "float")));
+  expect_complaint(liloc("align " + path("mm.ply") + " " + path("m.ply")), 1, "millimetres");
+  expect_complaint(liloc("align " + path("m.ply") + " " + path("mm.ply")), 1, "target spans 3020 m");
+}
+
 TEST_F(CommandLine, CloudsThatCannotBeMeantAreRefusedByFieldAndType) {
   const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\n";
   const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n";
@@ -245,6 +278,15 @@ TEST_F(CommandLine, ARecordingWithoutASoundDeviceFrameFails) {
   }
   expect_complaint(liloc("replay " + rec.string() + " --lockstep --out " + path("out")), 1,
                    "none of its 2 device frames could be used; the first: ");
+}
+
+TEST_F(CommandLine, ARecordingWithoutASoundCeilingFrameFails) {
+  const fs::path rec = folder_.path() / "rec";
+  replay::write_small_recording(rec);
+  for (const auto& frame : fs::directory_iterator(rec / "global/ceiling0/depth"))
+    fs::resize_file(frame.path(), 60);
+  expect_complaint(liloc("replay " + rec.string() + " --lockstep --out " + path("out")), 1,
+                   "none of its 2 ceiling frames could be used; the first: ");
 }
 
 TEST_F(CommandLine, CloudsThatAreTooThinAreNamedWithTheRemedy) {

@@ -112,6 +112,18 @@ TEST(Ingest, FramesOfAnotherSizeAreCountedAndNamed) {
   EXPECT_EQ(ceiling.depth_frames[0], 0);
 }
 
+TEST(Ingest, StampsInAnotherUnitAreNamed) {
+  Ceiling ceiling(129);
+  const auto publisher = wire::DepthPublisher::create(ceiling.seat, "ceiling0", kCamera);
+  ASSERT_TRUE(publisher);
+  ASSERT_TRUE(eventually([&] { return publisher->readers() == 1; }));
+  ASSERT_TRUE(publisher->publish(image(wall_clock_ns() / 1000)));
+  ASSERT_TRUE(eventually([&] { return ceiling.ingest->health()[0].malformed == 1; }));
+  EXPECT_NE(ceiling.ingest->health()[0].last_error.find("looks like microseconds"), std::string::npos)
+      << ceiling.ingest->health()[0].last_error;
+  EXPECT_EQ(ceiling.depth_frames[0], 0);
+}
+
 TEST(Ingest, WhatTheGlobalCloudRefusesIsCounted) {
   Ceiling ceiling(124);
   const auto publisher = wire::DepthPublisher::create(ceiling.seat, "ceiling0", kCamera);

@@ -12,8 +12,8 @@ const LidarMonitor::Time kStart{1000s};
 constexpr FrameContent kRoom{0.9, 1.0, 2.5, 4.5}, kNothing{};
 
 /// A LiDAR at 10 Hz that shows each of these for some seconds; its state after the last.
-LidarState state_after(const std::vector<std::pair<FrameContent, int>>& shown) {
-  LidarMonitor monitor("ceiling0", 10, kStart);
+LidarState state_after(const std::vector<std::pair<FrameContent, int>>& shown, double height_m = 0) {
+  LidarMonitor monitor("ceiling0", 10, kStart, height_m);
   auto now = kStart;
   for (const auto& [content, seconds] : shown)
     for (int i = 0; i < 10 * seconds; ++i) monitor.on_frame(now += 100ms, content);
@@ -35,6 +35,26 @@ TEST(LidarMonitor, FramesWithoutReturnsAreBlind) {
 TEST(LidarMonitor, AWrongUnitIsImplausibleFromTheStart) {
   for (const double factor : {0.001, 0.1, 0.25, 4.0, 10.0, 1000.0})
     EXPECT_EQ(state_after({{in_units_of(factor), 2}}), LidarState::implausible) << factor;
+}
+
+TEST(LidarMonitor, AUnitThatLiftsTheFloorIsImplausibleThoughItsRangesAreNot) {
+  const auto state = [](double height_m, double factor) {  // a LiDAR in a corner sees twice as far as down
+    const FrameContent content{0.9, 1, 1.2 * factor * height_m, 2 * factor * height_m, factor * height_m};
+    return state_after({{content, 2}}, height_m);
+  };
+  for (const double height_m : {3.4, 5.0, 6.5, 8.0}) {
+    EXPECT_EQ(state(height_m, 0.25), LidarState::implausible) << height_m << ": 0.00025 for 0.001";
+    EXPECT_EQ(state(height_m, 1.01), LidarState::ok) << height_m;
+  }
+  EXPECT_EQ(state(3.4, 0.4), LidarState::implausible) << "0.0001 for 0.00025";
+  EXPECT_EQ(state(2.6, 2.5), LidarState::implausible) << "0.00025 for 0.0001";
+}
+
+TEST(LidarMonitor, AMapWhoseZeroIsNotTheFloorIsNoWrongUnit) {
+  // Height over z = 0, and over the floor.
+  for (const auto& [height_m, drop_m] :
+       {std::pair{0.0, 2.6}, {-1.0, 2.6}, {1.2, 3.0}, {5.9, 2.7}, {10.8, 2.7}, {520.0, 2.6}})
+    EXPECT_EQ(state_after({{{0.9, 1, 2.8, 5, drop_m}, 2}}, height_m), LidarState::ok) << height_m;
 }
 
 TEST(LidarMonitor, ARangeThreeTimesTheUsualIsImplausibleUntilItIsBack) {

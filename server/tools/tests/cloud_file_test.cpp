@@ -31,6 +31,22 @@ TEST(CloudFile, BothKindsAreReadByTheirEnding) {
   }
 }
 
+TEST(CloudFile, WhatLiesFarFromItsOriginIsPlacedAboutItsMiddle) {
+  const TemporaryFolder folder;
+  const Eigen::Vector3d survey(691'608.25, 5'334'765.5, 520.125);
+  std::vector<Eigen::Vector3d> far;
+  for (int i = 0; i < 100; ++i) far.push_back(survey + Eigen::Vector3d(0.1 * i, 0.05 * i, 0.02 * i));
+  const auto placed =
+      read_placed_cloud(folder.put("far.ply", test::ply_of<double>(far, "binary_little_endian", "double")));
+  ASSERT_TRUE(placed) << placed.error().message;
+  for (std::size_t i = 0; i < far.size(); ++i)
+    EXPECT_LT((placed->origin + placed->cloud.points[i].cast<double>() - far[i]).norm(), 1e-5);
+  const auto near = read_placed_cloud(folder.put("near.pcd", test::pcd_of<double>(kPoints, "binary", 'F')));
+  ASSERT_TRUE(near) << near.error().message;
+  EXPECT_EQ(near->origin, Eigen::Vector3d(0, 0, 0)) << "it stays where it is";
+  EXPECT_EQ(near->cloud.points[2], Eigen::Vector3f(100, 0, 7));
+}
+
 TEST(CloudFile, IntegersArePointsToo) {
   const TemporaryFolder folder;
   const std::vector<Eigen::Vector3d> whole{{1, -2, 3}, {40, 50, 60}};

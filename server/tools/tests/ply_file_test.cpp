@@ -24,7 +24,7 @@ TEST(PlyFile, EveryFormatAndTypeIsRead) {
     ASSERT_TRUE(cloud) << cloud.error().message;
     ASSERT_EQ(cloud->size(), kPoints.size());
     for (std::size_t i = 0; i < kPoints.size(); ++i)
-      EXPECT_EQ(cloud->points[i], kPoints[i].cast<float>()) << name;
+      EXPECT_EQ((*cloud)[i].cast<float>(), kPoints[i].cast<float>()) << name;
   }
 }
 
@@ -36,7 +36,7 @@ TEST(PlyFile, PointsThatAreNotFiniteAreLeftOut) {
                                          "1 2 3\nnan 0 0\n0 inf 0\n0 0 1e999\n+4 5 6\n"));
   ASSERT_TRUE(cloud) << cloud.error().message;
   ASSERT_EQ(cloud->size(), 2U);
-  EXPECT_EQ(cloud->points[1], Eigen::Vector3f(4, 5, 6));
+  EXPECT_EQ((*cloud)[1], Eigen::Vector3d(4, 5, 6));
 }
 
 TEST(PlyFile, WhatDoesNotFitIsNamedWithFileAndRemedy) {

@@ -13,7 +13,7 @@ class BlockMaximaLaw : public testing::TestWithParam<unsigned> {};
 
 TEST_P(BlockMaximaLaw, AMaximumIsTheGreatestCellOfItsBlockOrOfAStepBeside) {
   const WatchedRoom w = watched_room(GetParam());
-  const ScoreField& field = w.target->field_coarse();
+  const ScoreField& field = w.target->field_coarse().regions().front();
   const BlockMaxima maxima(field, 16);
   for (int plane = 0; plane < ScoreField::kDirections; ++plane)
     for (int z = 0; z < field.size().z(); z += 3)

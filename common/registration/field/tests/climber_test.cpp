@@ -16,7 +16,7 @@ TEST_P(ClimberLaw, ClimbingEndsNearTheDeviceAndNeverLower) {
   Pose level = Pose::Identity();
   level.linear() = R;
   const Cloud points = transformed(level, w.query.sparse);
-  Climber climber(w.target->field_fine(), nullptr, Eigen::Vector3d::UnitZ(), points);
+  Climber climber(w.target->field_fine().regions().front(), nullptr, Eigen::Vector3d::UnitZ(), points);
   const Eigen::Matrix3d turn = w.T_map_device.linear() * R.transpose();
   const double yaw = std::atan2(turn(1, 0), turn(0, 0));
   Eigen::Vector4d start;

@@ -27,7 +27,7 @@ class RowSumsLaw : public testing::TestWithParam<unsigned> {};
 
 TEST_P(RowSumsLaw, RowsAddUpToWhatPlacesScoreOneByOne) {
   const WatchedRoom w = watched_room(GetParam());
-  const ScoreField& field = w.target->field_coarse();
+  const ScoreField& field = w.target->field_coarse().regions().front();
   const std::vector<CellOffset> offsets = some_offsets(GetParam());
   const BlockMaxima maxima(field, RowSums::kBlock);
   RowSums sums(field, maxima);
@@ -50,7 +50,7 @@ TEST_P(RowSumsLaw, RowsAddUpToWhatPlacesScoreOneByOne) {
 
 TEST_P(RowSumsLaw, SumsAboveAThresholdAreFoundAndExact) {
   const WatchedRoom w = watched_room(GetParam());
-  const ScoreField& field = w.target->field_coarse();
+  const ScoreField& field = w.target->field_coarse().regions().front();
   const BlockMaxima maxima(field, RowSums::kBlock);
   RowSums sums(field, maxima);
   sums.take(some_offsets(GetParam()));

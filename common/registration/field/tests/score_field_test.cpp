@@ -14,7 +14,7 @@ class ScoreFieldLaw : public testing::TestWithParam<unsigned> {};
 
 TEST_P(ScoreFieldLaw, ManyProbesAreWorthWhatEachIs) {
   const WatchedRoom w = watched_room(GetParam());
-  const ScoreField& field = w.target->field_fine();
+  const ScoreField& field = w.target->field_fine().regions().front();
   const Eigen::Vector3f shift(0.31F, -0.17F, 0.05F);
   ScoreField::Probes probes;
   std::mt19937_64 rng(GetParam());
@@ -50,7 +50,7 @@ TEST_P(ScoreFieldLaw, APlaneIsTheOctantThatANormalPointsTo) {
 
 TEST_P(ScoreFieldLaw, SurfacesCountOnlyWhereTheyFaceTheSameWay) {
   const WatchedRoom w = watched_room(GetParam());
-  const ScoreField& field = w.target->field_fine();
+  const ScoreField& field = w.target->field_fine().regions().front();
   int same = 0, opposite = 0;
   for (std::size_t i = 0; i < w.target->coarse.size(); i += 7) {
     const Eigen::Vector3f& p = w.target->coarse.points[i];
@@ -63,7 +63,7 @@ TEST_P(ScoreFieldLaw, SurfacesCountOnlyWhereTheyFaceTheSameWay) {
 
 TEST_P(ScoreFieldLaw, FloorIsWorthLessThanWalls) {
   const WatchedRoom w = watched_room(GetParam());
-  const ScoreField& field = w.target->field_coarse();
+  const ScoreField& field = w.target->field_coarse().regions().front();
   const Eigen::Vector3f up = Eigen::Vector3f::UnitZ();
   int floor = 0, floors = 0, wall = 0, walls = 0;
   for (std::size_t i = 0; i < w.target->coarse.size(); i += 3) {

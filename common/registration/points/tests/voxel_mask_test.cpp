@@ -75,6 +75,26 @@ TEST_P(VoxelMaskLaw, CoveringMissesNothingFarApartEither) {  // cells grow with 
   }
 }
 
+TEST_P(VoxelMaskLaw, ReachIsADistanceFarApartToo) {
+  Points points = some();
+  const std::size_t half = points.size() / 2;
+  for (std::size_t i = 0; i < half; ++i) points[i] += Eigen::Vector3f(400, -300, 0);
+  const VoxelMask mask(points, 0.3);
+  std::mt19937_64 rng(GetParam());
+  std::uniform_real_distribution<float> unit(-0.6F, 0.6F);
+  int inside = 0, places = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3f p = points[rng() % points.size()] + Eigen::Vector3f(unit(rng), unit(rng), unit(rng));
+    const float nearest = distance(points, p);
+    ASSERT_TRUE(mask.at(p) || nearest > 0.3F - 0.08F) << nearest;
+    ASSERT_TRUE(!mask.at(p) || nearest < 0.3F + 0.08F) << nearest;
+    inside += mask.at(p);
+  }
+  EXPECT_GT(inside, 60);
+  mask.for_each_place([&](const Eigen::Vector3f& p) { places += mask.at(p); });
+  EXPECT_GT(places, 1000);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, VoxelMaskLaw, testing::Range(1U, 7U));
 
 TEST(VoxelMask, OfNothingIsNowhere) {

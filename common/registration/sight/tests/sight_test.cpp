@@ -35,6 +35,15 @@ TEST(Sight, BesideAnEdgeNothingConflicts) {
   EXPECT_NE(half_covered().look({0.5F / 50 * 1.5F, 0, 1.5F}, 0.05F), Sight::conflict);
 }
 
+TEST(Sight, ReachesWhatItMayLookThroughAndNothingFarAway) {
+  const SightView view = half_covered();
+  EXPECT_TRUE(view.reaches({Eigen::Vector3f(-0.1F, -0.1F, 1), Eigen::Vector3f(0.1F, 0.1F, 1.2F)}));
+  EXPECT_TRUE(view.reaches({Eigen::Vector3f(1.7F, 1.2F, 2.8F), Eigen::Vector3f(9, 9, 9)})) << "a corner of it";
+  EXPECT_FALSE(view.reaches({Eigen::Vector3f(-1, -1, 5), Eigen::Vector3f(1, 1, 6)}));
+  EXPECT_FALSE(view.reaches({Eigen::Vector3f(100, 0, 0), Eigen::Vector3f(120, 10, 3)}));
+  EXPECT_FALSE(SightView().reaches({Eigen::Vector3f(-1, -1, -1), Eigen::Vector3f(1, 1, 1)}));
+}
+
 TEST(Sight, BesideAnEdgeOfADevicesCloudNothingConflicts) {
   Cloud cloud;  // a box at 1.5 m up to x = 0 and a wall at 3 m, in voxels of 0.05 m
   for (float y = -0.6F; y < 0.6F; y += 0.05F) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "common/geometry/depth.hpp"
 #include "common/testing/box_room.hpp"
 
@@ -131,6 +133,20 @@ TEST(Align, HostileCloudsAreErrorsOrUntrusted) {
   AlignOptions options;
   options.voxel_size_m = 0;
   EXPECT_FALSE(align_clouds(good, good, options));
+}
+
+TEST(Align, CloudsInMillimetresAreNamedAsSuch) {
+  const Cloud good = two_walls_and_a_box(1);
+  Cloud millimetres = good;
+  for (Eigen::Vector3f& p : millimetres.points) p *= 1000;
+  const std::tuple<const Cloud*, const Cloud*, const char*> cases[] = {{&millimetres, &good, "source"},
+                                                                       {&good, &millimetres, "target"}};
+  for (const auto& [source, target, name] : cases) {
+    const auto result = align_clouds(*source, *target, {});
+    ASSERT_FALSE(result);
+    EXPECT_NE(result.error().message.find(name), std::string::npos) << result.error().message;
+    EXPECT_NE(result.error().message.find("millimetres"), std::string::npos) << result.error().message;
+  }
 }
 
 TEST(Align, CloudsFarFromTheirOriginAreErrorsAndASinglePointThereIsNot) {

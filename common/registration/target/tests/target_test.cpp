@@ -60,8 +60,8 @@ TEST_P(SurfacesLaw, IndicesOfARoomThatChangedAreThoseOfARoomBuiltAnew) {
     box.max().array() += 0.5F;
     expect_same(now->nearest, anew.nearest, box, 0.04F);
     expect_same(now->nearest_coarse, anew.nearest_coarse, box, 0.07F);
-    expect_same(now->field_coarse(), anew.field_coarse());
-    expect_same(now->field_fine(), anew.field_fine());
+    expect_same(now->field_coarse().regions().front(), anew.field_coarse().regions().front());
+    expect_same(now->field_fine().regions().front(), anew.field_fine().regions().front());
     before = now;
   }
 }
@@ -145,7 +145,7 @@ TEST_P(DynamicRegionsLaw, WhatTheCeilingFindsNoMoreIsStaleThoughNobodyLooksThrou
 
 TEST_P(DynamicRegionsLaw, WhoeverMovesMakesEmptySpaceUnknownAndLeavesSurfaces) {
   const WatchedRoom w = watched_room(GetParam());
-  const ScoreField& field = w.target->field_coarse();
+  const ScoreField& field = w.target->field_coarse().regions().front();
   Eigen::Vector3f empty = Eigen::Vector3f::Zero();
   std::mt19937_64 rng(GetParam());
   std::uniform_real_distribution<float> x(1, 5), y(1, 4), z(0.6F, 2);
@@ -154,11 +154,11 @@ TEST_P(DynamicRegionsLaw, WhoeverMovesMakesEmptySpaceUnknownAndLeavesSurfaces) {
   const DynamicRegions regions(w.target.surfaces, w.target.views, {{empty}, {}});
   EXPECT_TRUE(regions.mask.at(empty));
   EXPECT_FALSE(regions.mask.at(empty + Eigen::Vector3f(1.5F, 0, 0)));
-  const ScoreField& masked = regions.field_coarse();
+  const ScoreField& masked = regions.field_coarse().regions().front();
   EXPECT_EQ(masked.at(empty, ScoreField::kUp), 0);
   for (const Eigen::Vector3f& p : w.target->coarse.points)
     ASSERT_EQ(masked.at(p, ScoreField::kAny), field.at(p, ScoreField::kAny));
-  EXPECT_EQ(&DynamicRegions(w.target.surfaces, w.target.views, {}).field_coarse(), &field);
+  EXPECT_EQ(&DynamicRegions(w.target.surfaces, w.target.views, {}).field_coarse().regions().front(), &field);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, DynamicRegionsLaw, testing::Range(1U, 7U));

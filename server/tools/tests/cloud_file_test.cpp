@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "common/recording/tests/temporary_folder.hpp"
 #include "server/tools/tests/cloud_texts.hpp"
 
@@ -67,8 +69,7 @@ TEST(CloudFile, WhatIsNoCloudIsRefusedByFileWithTheRemedy) {
       {folder.put("noending", "x"), "neither .ply nor .pcd"},
       {folder.put("garbage.ply", "x"), "no PLY header"},
       {folder.put("garbage.pcd", "x"), "no PCD header"},
-      {folder.put("nan.pcd",
-                  "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\nnan nan nan\n"),
+      {folder.put("nan.pcd", test::pcd_of<float>({Eigen::Vector3d::Constant(NAN)}, "binary", 'F')),
        "no finite point"},
       {folder.put("empty.ply",
                   "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"

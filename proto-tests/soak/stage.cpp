@@ -111,6 +111,7 @@ class Stage {
 DeviceInfo resident_of(const Tape& tape, std::size_t number) {
   DeviceInfo info = tape.devices[number % tape.devices.size()];
   info.id = fmt::format("resident{}", number);
+  info.still_seconds = 0;  // it is not there from the first second on
   return info;
 }
 

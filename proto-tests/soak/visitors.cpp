@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <fstream>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -136,6 +137,30 @@ class House {
   std::vector<Visit> visits_;
 };
 
+/// What clients log goes to a file while this lives.
+class ClientLog {
+ public:
+  explicit ClientLog(const std::filesystem::path& file) : out_(std::make_shared<Out>()) {
+    out_->file.open(file);
+    client::set_log([out = out_](int level, const std::string& line) {
+      constexpr int kDebug = 0;
+      if (level == kDebug) return;
+      const std::scoped_lock lock(out->mutex);
+      out->file << line << std::endl;  // flushed, for who looks meanwhile
+    });
+  }
+  ClientLog(const ClientLog&) = delete;
+  ClientLog& operator=(const ClientLog&) = delete;
+  ~ClientLog() { client::set_log({}); }
+
+ private:
+  struct Out {
+    std::mutex mutex;
+    std::ofstream file;
+  };
+  std::shared_ptr<Out> out_;
+};
+
 /// Frames and samples of the ways, each at its time, until the run is over or something broke.
 void feed_all(House& house, const Tape& tape, const SoakOptions& options, const RunClock& clock) {
   TapePlayer player(tape);
@@ -155,6 +180,7 @@ void feed_all(House& house, const Tape& tape, const SoakOptions& options, const 
 
 Result<std::vector<Visit>> play_visitors(const Tape& tape, const SoakOptions& options, const RunClock& clock,
                                          const wire::DomainOptions& seat) {
+  const ClientLog log(options.out / "visitors.log");
   House house(tape, options, clock, seat);
   std::vector<Status> kept(house.places());
   std::vector<std::jthread> keepers;

@@ -20,11 +20,11 @@ double slope_per_s(const std::vector<Sample>& samples) {
   return slopes.empty() ? 0 : median(std::move(slopes));
 }
 
-double middle(const std::vector<Sample>& samples, double from_s, double to_s) {
+std::vector<double> between(const std::vector<Sample>& samples, double from_s, double to_s) {
   std::vector<double> values;
   for (const Sample& sample : samples)
     if (sample.at_s >= from_s && sample.at_s <= to_s) values.push_back(sample.value);
-  return values.empty() ? 0 : median(std::move(values));
+  return values;  // not empty: the first or the last sample is among them
 }
 
 }  // namespace
@@ -36,8 +36,10 @@ Trend trend_of(const std::vector<Sample>& samples, double from_s) {
   if (judged.size() < 3) return {};
   const double begin_s = judged.front().at_s, end_s = judged.back().at_s, third_s = (end_s - begin_s) / 3;
   Trend trend;
-  trend.first = middle(judged, begin_s, begin_s + third_s);
-  trend.last = middle(judged, end_s - third_s, end_s);
+  const std::vector<double> first = between(judged, begin_s, begin_s + third_s);
+  trend.first = median(first);
+  trend.spread = quantile(first, 0.75) - quantile(first, 0.25);
+  trend.last = median(between(judged, end_s - third_s, end_s));
   trend.slope_per_h = 3600 * slope_per_s(judged);
   return trend;
 }

@@ -10,6 +10,7 @@ struct Sample {
 
 struct Trend {
   double first = 0, last = 0;  ///< medians of the first and of the last third
+  double spread = 0;           ///< of the first third: between its quartiles
   double slope_per_h = 0;      ///< Theil and Sen's: the median slope of all pairs; outliers do not move it
   [[nodiscard]] double growth() const { return last - first; }
 };

@@ -25,6 +25,7 @@ nlohmann::ordered_json to_object(const Trend& trend) {
   return {{"first", trend.first},
           {"last", trend.last},
           {"growth", trend.growth()},
+          {"spread", trend.spread},
           {"slope_per_h", trend.slope_per_h}};
 }
 
@@ -56,10 +57,10 @@ void add_visits(const std::vector<Visit>& visits, SoakReport& report) {
 void judge(SoakReport& report) {
   for (const ProcessReport& process : report.processes)
     for (const Figure& figure : figures_of(process))
-      if (figure.trend.growth() > figure.most)
-        report.failures.push_back(fmt::format("{}: {} grew from {:.1f} to {:.1f}{}, {:.0f} more are allowed",
+      if (figure.trend.growth() > figure.most + figure.trend.spread)
+        report.failures.push_back(fmt::format("{}: {} grew from {:.1f} to {:.1f}{}; {:.1f} more are allowed",
                                               process.name, figure.name, figure.trend.first, figure.trend.last,
-                                              figure.unit, figure.most));
+                                              figure.unit, figure.most + figure.trend.spread));
   if (report.answered == 0) report.failures.emplace_back("server: it answered nobody");
   if (report.silent_restarts > 0)
     report.failures.push_back(fmt::format("standby: {} of {} restarted servers answered nobody",

@@ -35,6 +35,7 @@ struct SoakReport {
   std::vector<std::string> failures;  ///< one line each; empty: nothing grew and all worked
 };
 
+/// What grew by more than is allowed, and than the quartiles of its first third lie apart, has grown.
 /// May have grown by so many between the first third and the last: Cyclone opens a descriptor more where two
 /// participants are made at one moment. A leak of one a visit or restart is over it within minutes.
 constexpr double kMostThreads = 2, kMostDescriptors = 2;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <functional>
 
 #include "proto-tests/sim/random.hpp"
@@ -36,6 +37,13 @@ TEST(SoakGrowth, WhatComesAndGoesIsNoGrowth) {
                                120);
   EXPECT_THAT(trend.growth(), DoubleNear(0, 0.5));
   EXPECT_THAT(trend.slope_per_h, DoubleNear(0, 3));
+}
+
+TEST(SoakGrowth, TheSpreadIsBetweenTheQuartilesOfTheFirstThird) {
+  const Trend trend = trend_of(samples(300, [](double s) { return s < 100 ? std::fmod(s, 5) : 7; }), 0);
+  EXPECT_EQ(trend.first, 2);
+  EXPECT_EQ(trend.spread, 2);
+  EXPECT_EQ(trend.last, 7);
 }
 
 TEST(SoakGrowth, TheWarmUpCountsNot) {

@@ -16,7 +16,7 @@ SoakReport sound_report() {
   report.seconds = 600;
   report.judged_from_s = 120;
   report.answered = 1000;
-  report.processes.push_back({"server", 12, {200, 205, 1}, {14, 14, 0}, {30, 31, 0}});
+  report.processes.push_back({"server", 12, {200, 205, 0, 1}, {14, 14, 0, 0}, {30, 31, 0, 0}});
   return report;
 }
 
@@ -30,17 +30,28 @@ TEST(SoakReport, NothingGrew) {
 
 TEST(SoakReport, EachThingThatGrewIsNamed) {
   SoakReport report = sound_report();
-  report.processes[0].memory_mb = {200, 213, 90};
-  report.processes.push_back({"resident0", 4, {30, 30, 0}, {10, 13, 30}, {20, 25, 40}});
+  report.processes[0].memory_mb = {200, 213, 0, 90};
+  report.processes.push_back({"resident0", 4, {30, 30, 0, 0}, {10, 13, 0, 30}, {20, 25, 0, 40}});
   judge(report);
   EXPECT_THAT(report.failures,
-              ElementsAre("server: memory grew from 200.0 to 213.0 MB, 12 more are allowed",
-                          "resident0: threads grew from 10.0 to 13.0, 2 more are allowed",
-                          "resident0: descriptors grew from 20.0 to 25.0, 2 more are allowed"));
+              ElementsAre("server: memory grew from 200.0 to 213.0 MB; 12.0 more are allowed",
+                          "resident0: threads grew from 10.0 to 13.0; 2.0 more are allowed",
+                          "resident0: descriptors grew from 20.0 to 25.0; 2.0 more are allowed"));
   const auto json = nlohmann::json::parse(to_json(report));
   EXPECT_FALSE(json.at("passed"));
   EXPECT_EQ(json.at("why").size(), 3U);
   EXPECT_EQ(json.at("processes")[0].at("memory_mb").at("growth"), 13);
+}
+
+TEST(SoakReport, WhatBreathesMayEndHigherThanItBegan) {
+  SoakReport report = sound_report();
+  report.processes[0].memory_mb = {330, 360, 60, 200};
+  judge(report);
+  EXPECT_THAT(report.failures, IsEmpty());
+  report.processes[0].memory_mb.last = 403;
+  judge(report);
+  EXPECT_THAT(report.failures,
+              ElementsAre("server: memory grew from 330.0 to 403.0 MB; 72.0 more are allowed"));
 }
 
 TEST(SoakReport, ASiteThatNoLongerWorksFailsThoughNothingGrows) {

@@ -1,5 +1,7 @@
 #include "proto-tests/soak/visitors.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <atomic>
 #include <fstream>
@@ -180,6 +182,7 @@ void feed_all(House& house, const Tape& tape, const SoakOptions& options, const 
 
 Result<std::vector<Visit>> play_visitors(const Tape& tape, const SoakOptions& options, const RunClock& clock,
                                          const wire::DomainOptions& seat) {
+  mallopt(M_ARENA_MAX, 2);  // as the server: with a heap a thread, 16 of them fill over many minutes
   const ClientLog log(options.out / "visitors.log");
   House house(tape, options, clock, seat);
   std::vector<Status> kept(house.places());

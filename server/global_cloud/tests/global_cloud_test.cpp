@@ -123,31 +123,6 @@ TEST(GlobalCloud, RoomsThatSessionsHoldAreBounded) {
   EXPECT_LT(most, 24U);
 }
 
-// At first few sessions look back by 2 s, then many come that look back by 12 s: renewals become rarer at once,
-// and none comes to nothing.
-TEST(GlobalCloud, RoomsThatSessionsHoldAreBoundedWhereMoreAreHeldMidway) {
-  GlobalCloud cloud(two_lidars(), {});
-  std::deque<std::shared_ptr<const Snapshot>> held;
-  std::size_t most_before = 0, most = 0;
-  StampNs oldest_shown = 0;
-  for (int i = 0; i < 600; ++i) {
-    const StampNs now = kT0 + from_ms(50 * i);
-    const auto units = static_cast<std::uint16_t>(2000 + 10 * i);
-    for (const std::size_t lidar : {0U, 1U}) ASSERT_TRUE(cloud.add_depth(lidar, wall(now, units)));
-    held.push_back(*cloud.nearest(now));
-    if (const std::size_t span = i < 200 ? 40 : 240; held.size() > span) held.pop_front();
-    std::set<const StitchedRoom*> rooms;
-    for (const auto& snapshot : held) rooms.insert(snapshot->room().get());
-    (i < 200 ? most_before : most) = std::max(i < 200 ? most_before : most, rooms.size());
-    oldest_shown = std::max(oldest_shown, now - held.back()->room()->stamp_ns());
-  }
-  EXPECT_GT(most_before, 8U);
-  EXPECT_LT(most_before, 24U);
-  EXPECT_GT(most, most_before);
-  EXPECT_LT(most, 40U) << "700 MB at 20 MB a room; without the rule 120 rooms";
-  EXPECT_LT(oldest_shown, from_ms(600)) << "the room is still renewed";
-}
-
 TEST(GlobalCloud, ASilentLidarIsLeftOut) {
   GlobalCloud cloud(two_lidars(), {});
   ASSERT_TRUE(cloud.add_depth(0, wall(kT0)));

@@ -61,7 +61,7 @@ double seconds_of(const timeval& time) {
 
 Result<Forked> Forked::start(const std::function<Result<std::string>()>& work) {
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return fail("load: no pipe: {}", std::strerror(errno));
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) return fail("no pipe: {}", std::strerror(errno));
   const pid_t pid = fork();
   if (pid == 0) {
     close(ends[0]);
@@ -70,7 +70,7 @@ Result<Forked> Forked::start(const std::function<Result<std::string>()>& work) {
   close(ends[1]);
   if (pid > 0) return Forked(pid, ends[0]);
   close(ends[0]);
-  return fail("load: no further process: {}", std::strerror(errno));
+  return fail("no further process: {}", std::strerror(errno));
 }
 
 Forked::Forked(Forked&& other) noexcept
@@ -93,8 +93,8 @@ Result<std::string> Forked::collect() {
   }
   pid_ = -1;
   cpu_s_ = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-  if (WIFSIGNALED(status)) return fail("load: a process of this run was killed by signal {}", WTERMSIG(status));
-  if (bytes.empty()) return fail("load: a process of this run ended without a word");
+  if (WIFSIGNALED(status)) return fail("a process of this run was killed by signal {}", WTERMSIG(status));
+  if (bytes.empty()) return fail("a process of this run ended without a word");
   const bool done = bytes.front() == kDone;
   bytes.erase(0, 1);
   if (!done) return fail("{}", bytes);

@@ -8,5 +8,6 @@ void add_replay(CLI::App& app, int& exit_code);
 void add_sim(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
 void add_load(CLI::App& app, int& exit_code);
+void add_soak(CLI::App& app, int& exit_code);
 
 }  // namespace liloc::toolbox

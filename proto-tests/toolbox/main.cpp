@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
   int exit_code = liloc::toolbox::kDone;
   liloc::toolbox::add_demo(app, exit_code);
   liloc::toolbox::add_load(app, exit_code);
+  liloc::toolbox::add_soak(app, exit_code);
   liloc::toolbox::add_replay(app, exit_code);
   liloc::toolbox::add_sim(app, exit_code);
   liloc::toolbox::add_align(app, exit_code);

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using CommandLine = ProgramTest;
 
 TEST_F(CommandLine, EverySubcommandHasHelp) {
-  for (const char* name : {"", "demo ", "load ", "replay ", "sim ", "align ", "calibrate ", "convert ",
+  for (const char* name : {"", "demo ", "load ", "soak ", "replay ", "sim ", "align ", "calibrate ", "convert ",
                            "doctor ", "explain ", "record "}) {
     const Outcome outcome = liloc(std::string(name) + "--help");
     EXPECT_EQ(outcome.exit_code, 0) << name;
@@ -40,7 +40,7 @@ TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
                                     {"--seed 3 --fast dance", "'--seed' needs a command before it"}}) {
     const Outcome outcome = liloc(given);
     expect_complaint(outcome, 2, says);
-    EXPECT_THAT(outcome.out, HasSubstr("commands are demo, load, replay, sim, align, calibrate, convert, "
+    EXPECT_THAT(outcome.out, HasSubstr("commands are demo, load, soak, replay, sim, align, calibrate, convert, "
                                        "doctor, explain, record; see liloc --help"));
   }
   expect_complaint(liloc("align a b --one --two"), 2, "not expected: '--one' '--two'");

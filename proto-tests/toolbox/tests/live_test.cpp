@@ -140,5 +140,31 @@ TEST_F(Live, LoadShowsAServerThatStandsStill) {
   EXPECT_THAT(processes_with(out), testing::IsEmpty());
 }
 
+// Half a minute tells whether all that comes and goes does; whether memory grows takes ten.
+TEST_F(Live, SoakWatchesASiteInWhichEverythingComesAndGoes) {
+  const fs::path out = rec_.parent_path() / "soak";
+  auto soak = start({"soak", out, "--seconds", "32", "--tape-seconds", "6", "--restart", "15", "--flap", "5",
+                     "--residents", "1", "--visitors", "2", "--stay", "5"});
+  ASSERT_TRUE(soak) << soak.error().message;
+  wait(*soak, seconds(150));
+  ASSERT_FALSE(soak->running());
+  const auto json = nlohmann::json::parse(std::ifstream(out / "soak.json"), nullptr, false);
+  ASSERT_FALSE(json.is_discarded()) << replay::last_lines(log_, 5);
+  std::vector<std::string> names;
+  for (const auto& process : json.at("processes")) {
+    names.push_back(process.at("name"));
+    EXPECT_GT(process.at("memory_mb").at("last"), 1) << names.back();
+    EXPECT_LE(process.at("descriptors").at("growth"), 2) << names.back();
+  }
+  EXPECT_THAT(names, testing::ElementsAre("server", "resident0", "visitors", "sensors"));
+  EXPECT_GT(json.at("answered"), 0);
+  EXPECT_GE(json.at("visits"), 4);
+  EXPECT_GE(json.at("lidar_flaps"), 1);
+  EXPECT_EQ(json.at("restarts"), 1);
+  EXPECT_EQ(json.at("passed"), json.at("why").empty());
+  EXPECT_TRUE(fs::exists(out / "samples.csv"));
+  EXPECT_THAT(processes_with(out), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace liloc::toolbox

@@ -21,8 +21,8 @@
 namespace liloc::bench {
 namespace {
 
-constexpr double kLearn_s = 3;            // until the ceiling knows what stands still
-constexpr double kStep_s = 0.5;           // between moments that are asked at
+constexpr double kLearn_s = 3.05;         // until the ceiling knows what stands still
+constexpr double kStep_s = 1;             // between moments that are asked at
 constexpr double kBodyRadius_m = 0.38;    // as of everybody in the simulator
 constexpr std::size_t kLpcPoints = 4000;  // as client/engine/request_maker.cpp
 constexpr StampNs kStart = 1'700'000'000'000'000'000;
@@ -43,14 +43,13 @@ class Server {
   Server(sim::World& world, const sim::SimOptions& options, const Site& site)
       : world_(world), options_(options), site_(site), cloud_(site, {}), localizer_(cloud_, {}) {}
 
-  /// Ceiling frames from a moment on, up to another.
-  [[nodiscard]] Status watch(double from_s, double to_s) {
-    const double period_s = 1 / options_.lidar_rate_hz;
-    for (double t = from_s; t < to_s - 1e-6; t += period_s)
+  /// All ceiling frames up to a moment.
+  [[nodiscard]] Status watch(double to_s) {
+    for (; next_s() < to_s; ++ticks_)
       for (std::size_t i = 0; i < site_.global_lidars.size(); ++i) {
         const GlobalLidar& lidar = site_.global_lidars[i];
-        const Status taken = cloud_.add_depth(
-            i, sensed(t, lidar.camera, lidar.T_map_sensor, options_.lidar_range_m, options_.lidar_sensor));
+        const Status taken = cloud_.add_depth(i, sensed(next_s(), lidar.camera, lidar.T_map_sensor,
+                                                        options_.lidar_range_m, options_.lidar_sensor));
         if (!taken) return taken;
       }
     cloud_.prepare();
@@ -81,12 +80,15 @@ class Server {
                       sim::mix(sim::mix(options_.seed) + ++frames_), stamp_at(time_s));
   }
 
+  [[nodiscard]] double next_s() const { return static_cast<double>(ticks_) / options_.lidar_rate_hz; }
+
   sim::World& world_;
   const sim::SimOptions& options_;
   const Site& site_;
   GlobalCloud cloud_;
   Localizer localizer_;
   std::uint64_t frames_ = 0;
+  int ticks_ = 0;
 };
 
 struct Plan {
@@ -129,13 +131,11 @@ Result<std::vector<PlanRow>> ask_all(Server& server, const Plan& plan, const pla
                                      const Camera& camera) {
   std::vector<PlanRow> rows;
   const auto moments = static_cast<std::size_t>((options.seconds - kLearn_s) / kStep_s);
-  double watched_s = 0;
   for (std::size_t moment = 0; moment < moments; ++moment) {
     const double now_s = kLearn_s + static_cast<double>(moment) * kStep_s;
-    if (const Status seen = server.watch(watched_s, now_s); !seen) return tl::unexpected(seen.error());
-    watched_s = now_s;
+    if (const Status seen = server.watch(now_s); !seen) return tl::unexpected(seen.error());
     for (std::size_t i = moment; i < views.size(); i += moments) {
-      const auto row = server.ask(now_s - 0.02, camera, plan.devices.views[views[i]].T_map_sensor);
+      const auto row = server.ask(now_s, camera, plan.devices.views[views[i]].T_map_sensor);
       if (!row) return tl::unexpected(row.error());
       rows.push_back({options.seed, coverage.features(views[i]), coverage.chance(views[i]), row->reply.overlap,
                       row->reply.verified(), row->right()});

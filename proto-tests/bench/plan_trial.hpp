@@ -18,8 +18,8 @@ struct PlanRow {
 };
 
 struct PlanTrialOptions {
-  double seconds = 9;  ///< simulated; requests are spread over all but the first three
-  int poses = 72;      ///< asked from, drawn from all that the plan looks from
+  double seconds = 7.1;  ///< simulated; requests are spread over all but the first three
+  int poses = 48;        ///< asked from, drawn from all that the plan looks from
   SiteStyle style;
 };
 

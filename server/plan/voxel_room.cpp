@@ -62,8 +62,9 @@ Result<VoxelRoom> VoxelRoom::create(const Cloud& scan_map) {
   const double longest_m = (bounds.high - bounds.low).maxCoeff();
   if (scan_map.empty() || !(longest_m >= kSmallest_m && longest_m <= kLargest_m))
     return fail("the scan spans {:.3g} m, of {} to {}; is it in metres?", longest_m, kSmallest_m, kLargest_m);
-  bounds.low.array() -= static_cast<float>(kVoxel_m);
-  bounds.high.array() += static_cast<float>(kVoxel_m);
+  bounds.low.array() -=
+      static_cast<float>(1.5 * kVoxel_m);               // floor and two walls in the middle of their voxels:
+  bounds.high.array() += static_cast<float>(kVoxel_m);  // noise does not make them two layers
   const Vector3i size =
       ((bounds.high - bounds.low) / static_cast<float>(kVoxel_m)).array().ceil().cast<int>() + 1;
   if (size.cast<double>().prod() > kMostCells)

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr std::size_t kMostWalls = 200'000;  // by hand
+constexpr std::size_t kMostWalls = 100'000;  // by hand
 constexpr double kArcStep_rad = 0.1;         // of the chords of an arc; by hand
 
 struct Wall {

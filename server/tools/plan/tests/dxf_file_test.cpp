@@ -95,8 +95,8 @@ TEST_F(DxfFile, WhatIsNoSoundFileIsNamedByItsLine) {
 
 TEST_F(DxfFile, TooManyWallsAreRefused) {
   std::string many;
-  for (int i = 0; i < 200'100; ++i) many += "0\nLINE\n10\n0\n11\n5\n";
-  expect_fails(entities(many), "over 200000 walls");
+  for (int i = 0; i < 100'100; ++i) many += "0\nLINE\n10\n0\n11\n5\n";
+  expect_fails(entities(many), "over 100000 walls");
 }
 
 TEST_F(DxfFile, AnArcOfNoSenseIsNoWall) {

@@ -8,8 +8,9 @@ namespace {
 
 // By hand, all of them.
 constexpr double kSmallest_m = 1, kLargest_m = 250;
-constexpr int kMargin = 3;             // cells around the drawing, so that outside is one
-constexpr double kLeastInside_m2 = 1;  // less is the inside of a letter or of a double wall
+constexpr int kMargin = 3;                 // cells around the drawing, so that outside is one
+constexpr double kLeastInside_m2 = 1;      // less is the inside of a letter or of a double wall
+constexpr double kMostInside_m2 = 10'000;  // as large as a site may be (common/recording/sensors.cpp)
 
 enum Cell : std::uint8_t { kInside = 0, kWall = 1, kOutside = 2 };
 
@@ -59,10 +60,10 @@ void draw_wall(Outline& outline, const Eigen::Vector2d& from_map, const Eigen::V
   const Eigen::Vector2d from = (from_map - outline.low_map) / outline.cell_m,
                         to = (to_map - outline.low_map) / outline.cell_m;
   if (!from.allFinite() || !to.allFinite()) return;
-  const double steps =
-      std::min(2 * (to - from).cwiseAbs().maxCoeff() + 1, 4.0 * (outline.width + outline.height));
-  for (double i = 0; i <= steps; ++i) {
-    const Eigen::Vector2d p = from + i / steps * (to - from);
+  const int steps = 1 + static_cast<int>(std::min(2 * (to - from).cwiseAbs().maxCoeff(),
+                                                  4.0 * (outline.width + outline.height)));
+  for (int i = 0; i <= steps; ++i) {
+    const Eigen::Vector2d p = from + static_cast<double>(i) / steps * (to - from);
     if ((p.array() < 0).any() || p.x() >= outline.width || p.y() >= outline.height) continue;
     outline.at(static_cast<int>(p.x()), static_cast<int>(p.y())) = kWall;
   }
@@ -75,6 +76,9 @@ Result<Cloud> extruded(const Outline& outline, double height_m) {
       static_cast<double>(std::ranges::count(cells.wall, std::uint8_t{kInside})) * cells.cell_m * cells.cell_m;
   if (inside_m2 < kLeastInside_m2)
     return fail("the drawing encloses no room: close the gaps of the outer wall, doors too");
+  if (inside_m2 > kMostInside_m2)
+    return fail("the drawing encloses {:.0f} m2, over {:.0f}; correct --scale, or draw a part of it", inside_m2,
+                kMostInside_m2);
   Cloud cloud;
   const int layers = static_cast<int>(std::lround(height_m / cells.cell_m));
   for (int y = 0; y < cells.height; ++y)

@@ -26,7 +26,8 @@ struct Outline {
 void draw_wall(Outline& outline, const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map);
 
 /// Floor at z = 0, ceiling at `height_m` and the walls' sides towards the inside, as points. Inside is what no
-/// way from the border of the drawing leads to. Error: nothing is: a gap in the outer wall, or none drawn.
+/// way from the border of the drawing leads to. Errors: nothing is (a gap in the outer wall, or none drawn),
+/// over 10 000 m2.
 [[nodiscard]] Result<Cloud> extruded(const Outline& outline, double height_m);
 
 }  // namespace liloc::plan

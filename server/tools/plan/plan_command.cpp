@@ -53,10 +53,11 @@ std::vector<plan::HungLidar> hung(const Site& site, double range_m) {
   return lidars;
 }
 
-/// The site as it is read again from its file, so that `--evaluate` of it tells the same to the digit.
-Result<Site> written(const std::filesystem::path& file, const Site& site) {
+/// A planned site is used as it is read again from its file, so that `--evaluate` of it tells the same to the
+/// digit.
+Result<Site> written(const std::filesystem::path& file, Site site, bool planned) {
   if (const Status done = write_site(file, site); !done) return tl::unexpected(done.error());
-  return read_site(file);
+  return planned ? read_site(file) : std::move(site);
 }
 
 Status write_all(const std::filesystem::path& folder, const PlanInput& input, const PlanFindings& findings) {
@@ -80,7 +81,7 @@ int run(const PlanArguments& arguments) {
   if (!input) return complain(input.error(), kBadUsage);
   PlanFindings findings{{}, look_around(*input), {}, {}};
   auto site = site_of(arguments, *input, findings.devices);
-  if (site) site = written(folder->path() / "site.json", *site);
+  if (site) site = written(folder->path() / "site.json", std::move(*site), !input->site);
   if (!site) return complain(site.error(), kFailed);
   findings.site = std::move(*site);
   const auto lidars = hung(findings.site, arguments.lidar_range_m);

@@ -48,6 +48,22 @@ struct Columns {
   std::vector<int> cells;
 };
 
+/// Columns between the outermost filled ones of each row: what walls enclose, whether their floor was scanned
+/// or not.
+double enclosed(Columns& filled) {
+  double count = 0;
+  for (int y = 0; y < filled.height; ++y) {
+    int first = filled.width, last = -1;
+    for (int x = 0; x < filled.width; ++x)
+      if (filled.at(x, y) != 0) {
+        first = std::min(first, x);
+        last = x;
+      }
+    count += std::max(0, last - first + 1);
+  }
+  return count;
+}
+
 struct Levels {
   double floor_z_m = 0;
   std::optional<double> ceiling_z_m;
@@ -65,7 +81,7 @@ Result<Levels> levels_of(const VoxelRoom& room) {
     if (slices.size() <= layer) slices.resize(layer + 1);
     slices[layer].push_back(cloud.points[i].z());
   }
-  const double enough = kShareOfRoom * static_cast<double>(std::ranges::count(filled.cells, 1));
+  const double enough = kShareOfRoom * enclosed(filled);
   std::vector<double> levels;
   for (std::size_t i = 0; i + 1 < slices.size(); ++i) {  // a level may straddle two layers
     std::vector<float> both = slices[i];

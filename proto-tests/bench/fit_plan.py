@@ -2,8 +2,8 @@
 """Fits the chance that a request is verified (server/plan/prediction.cpp) to rows of liloc_plan_bench.
 
 fit_plan.py ROWS... [--test ROWS...]
-Prints the coefficients, and of each file how far a site's predicted share is from the verified one.
-"""
+Prints the coefficients, and of each file how far a site's predicted share is from the verified one. No coefficient but
+the first may be negative: a LiDAR more must not lower the chance. Needs NumPy."""
 import argparse
 
 import numpy as np
@@ -15,11 +15,10 @@ def read(path):
 
 def features(rows):
     seen, covered, upright, weakest = rows["seen"], rows["covered"], rows["upright"], rows["weakest"]
-    return np.column_stack([np.ones(len(rows)), covered / np.maximum(seen, 1), np.log1p(upright), np.log1p(weakest),
-                            np.log1p(seen), rows["alike"]])
+    return np.column_stack([np.ones(len(rows)), covered / np.maximum(seen, 1), np.log1p(upright), np.log1p(weakest)])
 
 
-NAMES = ["one", "overlap", "ln(1 + upright)", "ln(1 + weakest)", "ln(1 + seen)", "alike"]
+NAMES = ["one", "overlap", "ln(1 + upright)", "ln(1 + weakest)"]
 
 
 def chance(x, w):

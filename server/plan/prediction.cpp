@@ -9,6 +9,10 @@ namespace {
 constexpr float kUpright = 0.5F;        // |normal.z| below which a surface stands; by hand
 constexpr double kFewestSurfaces = 30;  // that a device must see; by hand
 
+// Fitted by proto-tests/bench/fit_plan.py to sites 4001 and 4002 of liloc_plan_bench; DECISIONS.md has how it
+// does on others.
+constexpr double kOne = -6.78, kOverlap = 0.984, kUprightLog = 0.825, kWeakestLog = 1.100;
+
 }  // namespace
 
 void Support::add(const Eigen::Vector3f& normal_map, double sign) {
@@ -26,7 +30,9 @@ double Support::weakest() const {
 
 double chance_verified(const ViewFeatures& f) {
   if (f.seen < kFewestSurfaces || f.support.covered <= 0) return 0;
-  const double logit = -3 + 6 * f.support.covered / f.seen;
+  const double logit = kOne + kOverlap * f.support.covered / f.seen +
+                       kUprightLog * std::log1p(f.support.upright) +
+                       kWeakestLog * std::log1p(f.support.weakest());
   return 1 / (1 + std::exp(-logit));
 }
 

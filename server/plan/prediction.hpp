@@ -19,10 +19,10 @@ struct Support {
 struct ViewFeatures {
   double seen = 0;   ///< surfaces that the device sees
   Support support;   ///< of them
-  double alike = 0;  ///< Twin::alike
+  double alike = 0;  ///< Twin::alike; told beside, as it does not tell verified from unverified
 };
 
-/// Probability that a request from this pose, answered on its own, is verified. Fitted: DECISIONS.md.
+/// Probability that a request from this pose, answered on its own, is verified. More support never lowers it.
 [[nodiscard]] double chance_verified(const ViewFeatures& features);
 
 }  // namespace liloc::plan

@@ -24,13 +24,15 @@ class CoverageLaw : public testing::Test {
 
 TEST_F(CoverageLaw, ALidarMoreNeverLowersCoverageOrWhatSupportsAView) {
   Coverage coverage(*room_, devices_);
-  double before = 0;
+  double before = 0, localizable = 0;
   std::vector<double> covered(devices_.views.size(), 0);
   for (const auto& [x, y, azimuth] :
        {std::tuple{0.3, 0.3, 45.0}, {7.7, 5.7, 225.0}, {4, 5.7, 200.0}, {7.7, 0.3, 135.0}}) {
     coverage.add(lidar(x, y, azimuth));
     EXPECT_GE(coverage.covered_share(), before);
+    EXPECT_GE(coverage.localizable_share(), localizable);
     before = coverage.covered_share();
+    localizable = coverage.localizable_share();
     for (std::size_t i = 0; i < covered.size(); ++i) {
       EXPECT_GE(coverage.features(i).support.covered, covered[i]);
       covered[i] = coverage.features(i).support.covered;

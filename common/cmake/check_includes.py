@@ -39,6 +39,7 @@ NEEDS = {
     "server/global_cloud": ["common/registration"],
     "server/localization": ["server/global_cloud", "common/registration", "common/codec", "common/protocol"],
     "server/survey": ["common/registration"],
+    "server/plan": ["common/registration"],
     "server/answers": ["server/localization", "common/recording"],
     "server/ingest": ["common/wire", "server/global_cloud"],
     "server/service": ["server/localization", "common/wire"],
@@ -46,6 +47,7 @@ NEEDS = {
     "server/view": ["server/web", "common/codec"],
     "server/tools": ["server/survey", "server/answers", "server/global_cloud", "common/recording/bags", "common/wire",
                      "common/command"],
+    "server/tools/plan": ["server/plan", "server/tools", "common/recording", "common/command"],
     "server/app": ["server/service", "server/ingest", "server/answers", "server/view", "common/recording",
                    "common/command"],
     "client/include": ["common/base"],
@@ -64,7 +66,7 @@ NEEDS = {
     "proto-tests/sim/motion": ["proto-tests/sim/site"],
     "proto-tests/sim/sensors": ["proto-tests/sim/base", "proto-tests/sim/shapes"],
     # The tools and trials see both sides.
-    "proto-tests": ["server/app", "server/tools", "client/app", "proto-tests/sim", "common/testing"],
+    "proto-tests": ["server/app", "server/tools", "server/tools/plan", "client/app", "proto-tests/sim", "common/testing"],
 }
 TEST_EXTRAS = ["common/testing", "common/recording"]
 DDS_ROOMS = {"idl", "common/wire", "common/wire/dds", "common/wire/spots", "common/wire/sensors", "common/wire/ros",

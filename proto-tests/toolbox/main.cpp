@@ -6,6 +6,7 @@
 #include "common/command/program_options.hpp"
 #include "common/command/text.hpp"
 #include "proto-tests/toolbox/commands.hpp"
+#include "server/tools/plan/plan_command.hpp"
 
 namespace {
 
@@ -26,7 +27,7 @@ std::string wrong_command(const CLI::App& app, const std::string& first) {
 int run(int argc, char** argv) {
   CLI::App app(
       "LiLoc's toolbox: live demo, recordings replayed and judged, simulated sites, clouds aligned, LiDARs "
-      "calibrated, bags converted, answers explained, ills found",
+      "planned and calibrated, bags converted, answers explained, ills found",
       "liloc");
   app.set_version_flag("--version", LILOC_VERSION);
   app.require_subcommand(0, 1);
@@ -41,6 +42,7 @@ int run(int argc, char** argv) {
   liloc::toolbox::add_convert(app, exit_code);
   liloc::toolbox::add_doctor(app, exit_code);
   liloc::toolbox::add_explain(app, exit_code);
+  liloc::toolbox::add_plan(app, exit_code);
   liloc::toolbox::add_record(app, exit_code);
   if (const std::string wrong = wrong_command(app, argc > 1 ? argv[1] : ""); !wrong.empty())
     return liloc::toolbox::complain({wrong}, liloc::toolbox::kBadUsage);

@@ -26,7 +26,7 @@ using CommandLine = ProgramTest;
 
 TEST_F(CommandLine, EverySubcommandHasHelp) {
   for (const char* name : {"", "demo ", "load ", "soak ", "replay ", "sim ", "align ", "calibrate ", "convert ",
-                           "doctor ", "explain ", "record "}) {
+                           "doctor ", "explain ", "plan ", "record "}) {
     const Outcome outcome = liloc(std::string(name) + "--help");
     EXPECT_EQ(outcome.exit_code, 0) << name;
     EXPECT_THAT(outcome.out, HasSubstr("Usage"));
@@ -41,7 +41,7 @@ TEST_F(CommandLine, BadUsageIsExitCodeTwoAndOneLine) {
     const Outcome outcome = liloc(given);
     expect_complaint(outcome, 2, says);
     EXPECT_THAT(outcome.out, HasSubstr("commands are demo, load, soak, replay, sim, align, calibrate, convert, "
-                                       "doctor, explain, record; see liloc --help"));
+                                       "doctor, explain, plan, record; see liloc --help"));
   }
   expect_complaint(liloc("align a b --one --two"), 2, "not expected: '--one' '--two'");
   expect_complaint(liloc("align a b --voxel nan"), 2, "--voxel: is 'nan'; give a number in 0.005..1");

@@ -27,6 +27,7 @@ NEEDS = {
     "common/registration/refine": ["common/registration/target"],
     "common/registration/spot": ["common/registration/search", "common/registration/refine"],
     "common/registration/scan": ["common/registration/points"],
+    "common/learned": ["common/geometry"],
     "common/codec": ["common/geometry", "common/protocol"],
     "common/recording": ["common/geometry"],
     "common/recording/bags": ["common/recording"],

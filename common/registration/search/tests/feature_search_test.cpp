@@ -73,5 +73,24 @@ TEST(Describe, ACloudOfAnySizeGivesABoundedNumberOfDescriptors) {
   EXPECT_NEAR(static_cast<double>(described(500)), 500, 100);
 }
 
+TEST(Describe, ADescriberTakesThePlaceOfFpfh) {
+  const WatchedRoom w = watched_room(1);
+  const Cloud &dense = w.target->cloud, &thinned = w.target->coarse;
+  DescribeOptions options{0.5, 0.3, 1};
+  const Cloud* seen = nullptr;
+  options.describer = [&](const Cloud& of, const Cloud& points, const std::vector<std::uint32_t>& index) {
+    seen = &of;
+    EXPECT_EQ(points.size(), thinned.size());
+    return Features{{index.front()}, Eigen::MatrixXf::Constant(4, 1, 7)};
+  };
+  const Described described = describe(thinned, options, &dense);
+  EXPECT_EQ(seen, &dense);
+  EXPECT_EQ(described.features.index,
+            std::vector<std::uint32_t>{sample_indices(thinned.size(), 0.3, 1).front()});
+  EXPECT_EQ(described.features.descriptors, Eigen::MatrixXf::Constant(4, 1, 7));
+  (void)describe(thinned, options);
+  EXPECT_NE(seen, &dense) << "without a denser cloud it sees the thinned one";
+}
+
 }  // namespace
 }  // namespace liloc

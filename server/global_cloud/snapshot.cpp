@@ -82,6 +82,7 @@ const Described& StitchedRoom::described() const {
   std::call_once(described_once_, [this] {
     DescribeOptions describing{10 * options_.voxel_size_m, options_.feature_sampling, 1};
     describing.describer = options_.describer;
+    describing.up = up_map();
     described_ = describe(surfaces()->coarse, describing, &surfaces()->cloud);
     has_descriptors_ = true;
   });

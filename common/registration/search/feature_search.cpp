@@ -29,6 +29,14 @@ std::vector<FeatureMatch> matches_in(const Described& query, const Described& ta
   return matches;
 }
 
+/// By the describer, of clouds that stand upright where it is known how.
+Features described_upright(const DescribeOptions& options, const Cloud& dense, const Cloud& thinned,
+                           const std::vector<std::uint32_t>& index) {
+  if (!options.up) return options.describer(dense, thinned, index);
+  const Pose T_upright_cloud(Eigen::Quaterniond::FromTwoVectors(*options.up, Eigen::Vector3d::UnitZ()));
+  return options.describer(transformed(T_upright_cloud, dense), transformed(T_upright_cloud, thinned), index);
+}
+
 }  // namespace
 
 Described describe(const Cloud& thinned, const DescribeOptions& options, const Cloud* dense) {
@@ -37,8 +45,9 @@ Described describe(const Cloud& thinned, const DescribeOptions& options, const C
       static_cast<double>(options.most) / static_cast<double>(std::max<std::size_t>(1, thinned.size()));
   const double share = std::min(options.sampling, most);
   const std::vector<std::uint32_t> index = sample_indices(thinned.size(), share, options.seed);
-  result.features = options.describer ? options.describer(dense != nullptr ? *dense : thinned, thinned, index)
-                                      : fpfh(thinned, index, options.feature_radius_m);
+  result.features = options.describer
+                        ? described_upright(options, dense != nullptr ? *dense : thinned, thinned, index)
+                        : fpfh(thinned, index, options.feature_radius_m);
   return result;
 }
 

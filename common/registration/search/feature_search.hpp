@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "common/registration/features/fpfh.hpp"
@@ -21,6 +22,8 @@ struct DescribeOptions {
   std::uint64_t seed = 1;
   std::size_t most = 100'000;  ///< about so many are described at most: matching costs their product
   Describer describer = {};    ///< empty: FPFH
+  /// What is up in the cloud's frame, where it is known: a describer sees the cloud turned to have z up.
+  std::optional<Eigen::Vector3d> up = std::nullopt;
 };
 /// `dense`: the cloud that was thinned, for a describer that sees more in it; null: there is none.
 [[nodiscard]] Described describe(const Cloud& thinned, const DescribeOptions& options,

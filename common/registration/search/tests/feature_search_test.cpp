@@ -88,8 +88,13 @@ TEST(Describe, ADescriberTakesThePlaceOfFpfh) {
   EXPECT_EQ(described.features.index,
             std::vector<std::uint32_t>{sample_indices(thinned.size(), 0.3, 1).front()});
   EXPECT_EQ(described.features.descriptors, Eigen::MatrixXf::Constant(4, 1, 7));
-  (void)describe(thinned, options);
-  EXPECT_NE(seen, &dense) << "without a denser cloud it sees the thinned one";
+  options.up = -Eigen::Vector3d::UnitX();
+  options.describer = [&](const Cloud& of, const Cloud& points, const std::vector<std::uint32_t>& index) {
+    EXPECT_NEAR(points.points[index.front()].z(), -thinned.points[index.front()].x(), 1e-4F);
+    EXPECT_NEAR(of.points.front().z(), -dense.points.front().x(), 1e-4F);
+    return Features{{}, {}};
+  };
+  (void)describe(thinned, options, &dense);
 }
 
 }  // namespace

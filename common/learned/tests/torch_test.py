@@ -21,7 +21,7 @@ except ImportError:
     sys.exit(77)
 
 FORWARD, CONVERTER = sys.argv[1:3]
-SIDE = 32  # of the dense grid; its corner is at -16, which all strides divide
+SIDE = 16  # of the dense grid; its corner is at -8, which all strides divide
 PAPER = ((32, 64, 128, 256), (64, 64, 64, 128))
 SMALL = ((4, 8, 12), (8, 4, 8))
 
@@ -118,8 +118,8 @@ def random_room(seed):
     occupied = torch.rand((SIDE, SIDE, SIDE), generator=generator) < 0.01
     plane = torch.rand((3, SIDE, SIDE), generator=generator) < 0.7
     occupied[5] |= plane[0]
-    occupied[:, 17] |= plane[1]
-    occupied[:, :, 30] |= plane[2]
+    occupied[:, 9] |= plane[1]
+    occupied[:, :, 14] |= plane[2]
     return occupied
 
 

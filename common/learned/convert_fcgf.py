@@ -13,6 +13,7 @@ import pathlib
 import pickle
 import struct
 import sys
+import types
 
 USED = (".kernel", ".bias", ".bn.weight", ".bn.bias", ".bn.running_mean", ".bn.running_var")
 
@@ -47,20 +48,31 @@ class Unpickler(pickle.Unpickler):
         return Settings
 
 
-class SafePickle:
-    """What torch.load takes for the module pickle."""
+def safe_pickle():
+    """The module pickle, as torch.load takes it, with the Unpickler above."""
+    module = types.ModuleType("safe_pickle")
+    vars(module).update({name: value for name, value in vars(pickle).items() if not name.startswith("__")})
+    module.Unpickler = Unpickler
+    module.load = lambda file, **options: Unpickler(file, **options).load()
+    return module
 
-    Unpickler = Unpickler
-    load = staticmethod(lambda file, **options: Unpickler(file, **options).load())
+
+def load(path):
+    import torch.serialization
+    safe, usual = safe_pickle(), torch.serialization.pickle
+    torch.serialization.pickle = safe  # PyTorch 1.13 overlooks pickle_module
+    try:
+        return torch.load(str(path), map_location="cpu", pickle_module=safe, weights_only=False)
+    finally:
+        torch.serialization.pickle = usual
 
 
 def read_checkpoint(path):
     """Its arrays by name, and the settings that it was trained with."""
-    import torch
     if not path.is_file():
         raise BadInput(f"{path}: no such file")
     try:
-        checkpoint = torch.load(str(path), map_location="cpu", pickle_module=SafePickle)
+        checkpoint = load(path)
     except Exception as error:  # pickle, zip and torch have dozens of their own
         raise BadInput(f"{path}: is no checkpoint of PyTorch: {str(error).splitlines()[0] if str(error) else error!r}")
     if not isinstance(checkpoint, dict):

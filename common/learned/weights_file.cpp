@@ -15,7 +15,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "arrays are taken as they lie in the file");
 
 using Json = nlohmann::json;
-constexpr int kDeepest = 3;  // of the header: an array's shape and offsets
+constexpr int kDeepest = 3;  // of the header: the numbers of a shape
 
 /// The header as JSON, no deeper than it has to be, no key twice.
 Result<Json> parse_header(std::string_view text) {

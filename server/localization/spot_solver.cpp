@@ -104,7 +104,7 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
                     std::call_once(raw->described_once_, [&] {
                       DescribeOptions describing{10 * options.voxel_size_m, options.sampling, options.seed};
                       describing.describer = options.describer;
-          describing.up = raw->request_.up_sensor;
+                      describing.up = raw->request_.up_sensor;
                       raw->described_ = describe(raw->query_.medium, describing, &raw->query_.cloud);
                     });
                     return raw->described_;

@@ -8,13 +8,13 @@
 #include "client/session/connection_watch.hpp"
 #include "common/base/log.hpp"
 #include "common/credentials/end_of_credentials.hpp"
-#include "common/wire/client_link.hpp"
-#include "common/wire/status.hpp"
+#include "common/wire/spots/client_link.hpp"
+#include "common/wire/spots/status.hpp"
 
 namespace liloc::client {
 namespace {
 
-constexpr std::size_t kMostPoints = 4'000'000;  // as in common/wire/convert_points.cpp
+constexpr std::size_t kMostPoints = 4'000'000;  // as in common/wire/sensors/convert_points.cpp
 
 Outcome<Taken> to_public(const Status& status) {
   return status ? Outcome<Taken>(Taken{}) : Outcome<Taken>::failed(status.error().message);

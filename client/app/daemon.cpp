@@ -4,7 +4,7 @@
 #include <thread>
 #include <utility>
 
-#include "common/wire/sensors.hpp"
+#include "common/wire/sensors/sensors.hpp"
 
 namespace liloc {
 namespace {

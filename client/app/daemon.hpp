@@ -6,7 +6,7 @@
 #include "client/app/options.hpp"
 #include "client/app/ros_bridge.hpp"
 #include "client/app/sensor_feed.hpp"
-#include "common/wire/dispatcher.hpp"
+#include "common/wire/dds/dispatcher.hpp"
 
 namespace liloc {
 

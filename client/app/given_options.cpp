@@ -7,8 +7,8 @@
 
 #include "common/command/text.hpp"
 #include "common/geometry/pose.hpp"
-#include "common/wire/participant.hpp"
-#include "common/wire/sensors.hpp"
+#include "common/wire/dds/participant.hpp"
+#include "common/wire/sensors/sensors.hpp"
 
 namespace liloc {
 namespace {

@@ -88,9 +88,7 @@ void declare_ros(CLI::App& app, RosOptions& ros, GivenOptions& given) {
       ->capture_default_str();
 }
 
-void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
-  auto& c = options.client;
-  app.set_version_flag("--version", LILOC_VERSION);
+void declare_network(CLI::App& app, client::Options& c) {
   app.add_option("--id", c.id, "Name of the device: its topics are rt/<id>/...")
       ->required()
       ->check(command::an_id());
@@ -101,10 +99,9 @@ void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
   app.add_option(
       "--credentials", c.credentials,
       "Folder of deploy/credentials: encrypted, and only with those who have theirs of the same keystore");
-  declare_device(app, options, given);
-  declare_topics(app, given);
-  declare_ros(app, options.ros, given);
+}
 
+void declare_method(CLI::App& app, client::Options& c, GivenOptions& given) {
   auto* method = app.add_option_group("localization");
   method->add_option("--interval-ms", c.interval_ms, "Upper bound between global registrations")
       ->check(in_range(50, 60'000))
@@ -152,7 +149,16 @@ void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
       ->capture_default_str();
   method->add_flag("--cold", c.cold, "Each request is answered on its own");
   method->add_option("--seed", c.seed, "Of all randomness")->check(command::any_seed())->capture_default_str();
+}
 
+void declare(CLI::App& app, DaemonOptions& options, GivenOptions& given) {
+  client::Options& c = options.client;
+  app.set_version_flag("--version", LILOC_VERSION);
+  declare_network(app, c);
+  declare_device(app, options, given);
+  declare_topics(app, given);
+  declare_ros(app, options.ros, given);
+  declare_method(app, c, given);
   app.add_option("--trace", c.trace_folder, "Write online.tum, trajectory.tum, spots.csv and local.csv here");
   app.add_option("--log-level", given.log_level, "debug, info, warning or error")
       ->check(command::one_of({"debug", "info", "warning", "error"}))

@@ -4,7 +4,7 @@
 #include "client/include/liloc/client.hpp"
 #include "common/base/log.hpp"
 #include "common/base/result.hpp"
-#include "common/wire/ros_publishers.hpp"
+#include "common/wire/ros/ros_publishers.hpp"
 
 namespace liloc {
 

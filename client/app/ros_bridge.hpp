@@ -4,7 +4,7 @@
 
 #include "client/app/map_odom_slew.hpp"
 #include "client/app/options.hpp"
-#include "common/wire/ros_publishers.hpp"
+#include "common/wire/ros/ros_publishers.hpp"
 
 namespace liloc {
 

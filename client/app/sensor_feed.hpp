@@ -4,8 +4,8 @@
 #include "client/app/options.hpp"
 #include "common/base/line_limit.hpp"
 #include "common/geometry/camera.hpp"
-#include "common/wire/dispatcher.hpp"
-#include "common/wire/sensors.hpp"
+#include "common/wire/dds/dispatcher.hpp"
+#include "common/wire/sensors/sensors.hpp"
 
 namespace liloc {
 

@@ -9,16 +9,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr StampNs kForceWindow = from_ms(2000);
-constexpr double kForceSeenS = 1;  // of it
-constexpr double kGravity = 9.81;
-constexpr double kForceOff = 2.5;    // m/s^2: over two seconds nobody gains 5 m/s
-constexpr double kForceMoved = 3.5;  // and over twice that nobody both gains and loses as much
+constexpr StampNs kForceWindow = from_ms(2000);  // of steps whose mean is taken; by hand
+constexpr double kForceSeenS = 1;                // of it
+constexpr double kGravity = 9.81;                // m/s^2, on Earth
+constexpr double kForceOff = 2.5;                // m/s^2: over two seconds nobody gains 5 m/s
+constexpr double kForceMoved = 3.5;              // and over twice that nobody both gains and loses as much
 
 constexpr StampNs kSignWindow = from_ms(8000);  // a walk speeds up and slows down in it; by hand
 constexpr double kSideS = 0.5;                  // accelerations are means over as much on either side
-constexpr std::size_t kFewestPushes = 5;
-constexpr double kPushesSeenS = 2;    // from the first of them to the last
+constexpr std::size_t kFewestPushes = 5;        // that tell a sign; by hand
+constexpr double kPushesSeenS = 2;              // from the first of them to the last
 constexpr double kFewestM_s2 = 0.05;  // rms of their changes: registration that errs by 2 mm makes it 0.02
 constexpr double kClearSign = 0.5;    // squared correlation
 constexpr double kMostFactor = 2;     // either way: what is right, or inverted, is as large as what was seen

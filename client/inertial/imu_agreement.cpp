@@ -16,16 +16,16 @@ using Eigen::Vector3d;
 constexpr double kTurningRad = 0.015;
 // What registration may err by, and intrinsics that are 10 % off with a mounting that is 10 degrees off.
 constexpr double kErrorRad = 0.006, kErrorShare = 0.3;
-constexpr StampNs kRecent = from_ms(3000);
-constexpr StampNs kOffsetWindow = from_ms(8000);
+constexpr StampNs kRecent = from_ms(3000);              // of steps that tell a factor; by hand
+constexpr StampNs kOffsetWindow = from_ms(8000);        // of rates that tell an offset: DECISIONS.md
 constexpr std::size_t kJudged = 6, kContradicting = 4;  // of the newest steps
-constexpr std::size_t kProving = 10, kMostStrays = 1;
+constexpr std::size_t kProving = 10, kMostStrays = 1;   // of the newest, to be trusted again; by hand
 
 constexpr std::size_t kFewest = 20;    // steps that tell an offset
 constexpr double kFactorSeenS = 1.2;   // that tell a factor
 constexpr double kFewestRad_s = 0.08;  // rms of the rate's changes, five times what registration errs by
-constexpr double kClear = 0.85, kClearFactor = 0.7;  // squared correlation
-constexpr StampNs kFarthest = from_ms(3000), kCoarse = from_ms(40), kFine = from_ms(5);
+constexpr double kClear = 0.85, kClearFactor = 0.7;                                      // squared correlation
+constexpr StampNs kFarthest = from_ms(3000), kCoarse = from_ms(40), kFine = from_ms(5);  // DECISIONS.md
 constexpr StampNs kLeast = from_ms(20);    // less is within what a filter for one clock copes with
 constexpr double kAsRight = 0.01;          // of the squared correlation, and ...
 constexpr double kCoarselyAsRight = 0.05;  // ... half a coarse step beside the place, at a sway a second

@@ -13,12 +13,13 @@ constexpr StampNs kStep = from_ms(60);           // over which rotations are com
 constexpr StampNs kLongestStep = from_ms(1500);  // one frame a second, or a little less
 // Frames farther apart are matched where the IMU says alone: so many in a row that are not contradict it.
 constexpr StampNs kRare = from_ms(400);
-constexpr int kUnmatched = 3;
+constexpr int kUnmatched = 3;                 // by hand, DECISIONS.md
 constexpr StampNs kEvery = from_ms(1000);     // an explanation is sought
 constexpr StampNs kSignEvery = from_ms(400);  // the force's sign is compared: it takes seconds to show
-constexpr StampNs kMostCorrected = from_ms(1000), kSameOffset = from_ms(30);
-constexpr StampNs kFar = from_ms(1000);  // no network delays the one or the other by so much
-constexpr StampNs kLongestRetry = from_ms(60'000);
+constexpr StampNs kMostCorrected = from_ms(1000),
+                  kSameOffset = from_ms(30);        // of clocks; by hand, DECISIONS.md
+constexpr StampNs kFar = from_ms(1000);             // no network delays the one or the other by so much
+constexpr StampNs kLongestRetry = from_ms(60'000);  // by hand, DECISIONS.md
 constexpr double kGravity = 9.81, kDegrees = 180 / std::numbers::pi;
 constexpr double kFactorShare = 0.15;  // by which a factor may differ from a unit's
 constexpr double kMostBias = 0.1;      // rad/s; more is no bias

@@ -62,8 +62,8 @@ class ImuTrust {
   std::optional<StampNs> offset_;                     ///< found then
   StampNs corrected_ns_ = 0;                          ///< taken off the stamps
 
-  static constexpr int kFarFrames = 5;
-  static constexpr StampNs kFirstRetry = from_ms(5000);
+  static constexpr int kFarFrames = 5;                   // in a row whose samples come late; by hand
+  static constexpr StampNs kFirstRetry = from_ms(5000);  // by hand, DECISIONS.md
 };
 
 }  // namespace liloc

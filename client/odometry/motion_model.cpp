@@ -23,7 +23,7 @@ constexpr double kFadingS =
 constexpr double kGravity = 9.81;  // m/s^2, on Earth
 // What the filter starts from: m/s, rad/s, m/s^2. By hand.
 constexpr double kStoodVelocitySd = 0.05, kUnknownVelocitySd = 0.5;
-constexpr double kCalibratedGyroSd = 5e-4, kCalibratedForceSd = 0.03;
+constexpr double kCalibratedGyroSd = 5e-4, kCalibratedForceSd = 0.03;  // after standing still
 // What a blind stretch shows of the errors of velocity and gravity that matches had left:
 // client/inertial/DECISIONS.md.
 constexpr double kBlindVelocitySd = 0.04, kBlindAccelSd = 0.05;

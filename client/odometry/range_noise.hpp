@@ -24,7 +24,7 @@ class RangeNoise {
   [[nodiscard]] double total() const { return std::accumulate(sd_units_.begin(), sd_units_.end(), 0.0); }
 
   static constexpr std::size_t kBins = 24;  ///< to 9.6 m, beyond the range of the sensors known; by hand
-  static constexpr double kBinM = 0.4;
+  static constexpr double kBinM = 0.4;      // by hand
 
  private:
   double depth_scale_m_;

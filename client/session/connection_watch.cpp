@@ -7,8 +7,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kMissed = 5s;  // discovery and a driver's start take less
-constexpr auto kAgain = 10s;
+constexpr auto kMissed = 5s;           // discovery and a driver's start take less
+constexpr auto kAgain = 10s;           // what is told once is told again after it; by hand
 constexpr auto kServerAgain = 5s;      // a server that comes and goes is told so often
 constexpr std::uint64_t kRefused = 3;  // in a row
 

@@ -48,7 +48,7 @@ class SourceLimit {
   }
 
  private:
-  static constexpr std::size_t kSources = 16;
+  static constexpr std::size_t kSources = 16;  // by hand: more lines a window bury all others
   Time window_{};
   std::set<std::string> heard_;  ///< in this window
   std::uint64_t held_ = 0;

@@ -32,7 +32,11 @@ NEEDS = {
     "common/recording": ["common/geometry"],
     "common/recording/bags": ["common/recording"],
     "common/testing": ["common/registration"],
-    "common/wire": ["idl", "common/geometry", "common/codec", "common/protocol", "common/credentials"],
+    "common/wire": ["common/wire/spots", "common/wire/ros"],
+    "common/wire/dds": ["idl", "common/geometry", "common/credentials"],
+    "common/wire/spots": ["common/wire/dds", "common/protocol"],
+    "common/wire/sensors": ["common/wire/dds"],
+    "common/wire/ros": ["common/wire/sensors"],
     "server/global_cloud": ["common/registration"],
     "server/localization": ["server/global_cloud", "common/registration", "common/codec", "common/protocol"],
     "server/survey": ["common/registration"],
@@ -54,11 +58,18 @@ NEEDS = {
     "client/examples": ["client/include"],
     "client/app": ["client/api", "common/recording", "common/command"],
     "client/python": ["client/include"],
+    "proto-tests/sim": ["proto-tests/sim/motion", "proto-tests/sim/sensors", "common/recording"],
+    "proto-tests/sim/base": ["common/base"],
+    "proto-tests/sim/shapes": ["common/geometry"],
+    "proto-tests/sim/site": ["proto-tests/sim/base", "proto-tests/sim/shapes"],
+    "proto-tests/sim/motion": ["proto-tests/sim/site"],
+    "proto-tests/sim/sensors": ["proto-tests/sim/base", "proto-tests/sim/shapes"],
     # The tools and trials see both sides.
-    "proto-tests": ["server/app", "server/tools", "client/app", "proto-tests", "common/testing"],
+    "proto-tests": ["server/app", "server/tools", "client/app", "proto-tests/sim", "common/testing"],
 }
 TEST_EXTRAS = ["common/testing", "common/recording"]
-DDS_ROOMS = {"idl", "common/wire", "proto-tests"}
+DDS_ROOMS = {"idl", "common/wire", "common/wire/dds", "common/wire/spots", "common/wire/sensors", "common/wire/ros",
+             "proto-tests"}
 TRANSPORT = re.compile(r"^(dds/|ddsc/|liloc\.h$|ros2\.h$)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 SOURCES = {".cpp", ".hpp", ".h", ".c", ".cc", ".idl"}

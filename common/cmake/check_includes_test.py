@@ -31,7 +31,7 @@ class OneWayRule(unittest.TestCase):
             "server/service/queue.cpp": '#include "common/base/result.hpp"\n#include <vector>\n'}))
 
     def test_a_higher_room_is_caught_with_its_line(self):
-        found = self.problems({"common/geometry/pose.cpp": '#include <vector>\n#include "common/wire/qos.hpp"\n'})
+        found = self.problems({"common/geometry/pose.cpp": '#include <vector>\n#include "common/wire/dds/qos.hpp"\n'})
         self.assertEqual(1, len(found))
         self.assertIn("common/geometry/pose.cpp:2: common/geometry includes common/wire", found[0])
 

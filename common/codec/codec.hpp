@@ -23,7 +23,7 @@ struct CodecOptions {
 
 // Memory bound: a 640x480 frame at 0.03 m has 12 000 points (paper, section 3.1.3); by hand.
 constexpr std::size_t kMaxCodecPoints = 100'000;
-constexpr float kMaxCoordinate_m = 1000.0F;  // as in common/wire/convert_points.cpp; by hand
+constexpr float kMaxCoordinate_m = 1000.0F;  // as in common/wire/sensors/convert_points.cpp; by hand
 
 /// Points only: normals are made anew by the receiver. Pure. Errors: an empty cloud, over kMaxCodecPoints, a
 /// point that is not finite or beyond 1 km, options out of range.

@@ -83,7 +83,7 @@ DepthImage render(const BoxRoom& room, const Pose& T_map_sensor, const Camera& c
 
 std::vector<ImuSample> imu_along(const std::function<Pose(double)>& T_map_sensor, const Pose& T_imu_sensor,
                                  double from_s, double to_s, double rate_hz, StampNs start_ns) {
-  constexpr double kStep = 1e-3;
+  constexpr double kStep = 1e-3;  // s, of the differences that rates and forces are
   std::vector<ImuSample> samples;
   const auto T_map_imu = [&](double t) { return T_map_sensor(t) * T_imu_sensor.inverse(); };
   for (int i = 0; from_s + i / rate_hz <= to_s; ++i) {

@@ -8,7 +8,7 @@ import check_version as check
 
 IDL = "struct A { long x; };  // metres\n"
 HEADER = (check.ROOT / "common/protocol/spot.hpp").read_text()
-STATUS = (check.ROOT / "common/wire/status.hpp").read_text()
+STATUS = (check.ROOT / "common/wire/spots/status.hpp").read_text()
 PROTOCOL = (check.IDL / "PROTOCOL.md").read_text()
 
 
@@ -55,7 +55,7 @@ class Document(unittest.TestCase):
         self.assertIn(f"version is {check.present_version(HEADER)}", PROTOCOL)
 
     def test_it_names_every_topic(self):
-        topics = (check.ROOT / "common/wire/topics.hpp").read_text()
+        topics = (check.ROOT / "common/wire/dds/topics.hpp").read_text()
         for name in re.findall(r'Topic = "([^"]+)"', topics) + re.findall(r'return "rt/" \+ id \+ "([^"]+)"', topics):
             self.assertIn(name, PROTOCOL)
 

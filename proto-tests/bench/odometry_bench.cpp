@@ -30,7 +30,7 @@ struct Options {
   std::vector<std::string> recordings;
 };
 
-constexpr int kGaps[] = {2, 10};
+constexpr int kGaps[] = {2, 10};  // frames from one of a pair to the other; by hand
 
 /// The clouds that the odometry saw, with its poses and the true ones.
 Result<std::vector<OdometryFrame>> frames_of(const DeviceRecording& device, const DriftRun& run) {

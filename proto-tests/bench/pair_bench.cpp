@@ -13,11 +13,11 @@
 namespace liloc::bench {
 namespace {
 
-constexpr double kGoodRad = 3 / 57.29577951308232, kGoodM = 0.1;
+constexpr double kGoodRad = 3 / 57.29577951308232, kGoodM = 0.1;  // the 3 deg, 0.1 m of all figures
 // Overlap below which turned guesses are tried, and then features.
 constexpr double kPoorOverlap = 0.8;
-constexpr double kOverlapVoxelM = 0.05;
-constexpr double kOverlapping = 0.3;  // pairs with less have little or nothing in common, as behind a hand
+constexpr double kOverlapVoxelM = 0.05;  // as replay measures overlap (truth.cpp)
+constexpr double kOverlapping = 0.3;     // pairs with less have little or nothing in common, as behind a hand
 constexpr double kGuessSdRad = 0.05, kGuessSdM = 0.05;  // of constant velocity, per two frames
 
 double quantile(std::vector<double> values, double q) {

@@ -13,7 +13,7 @@ namespace {
 
 using Points = pcl::PointCloud<pcl::PointNormal>;
 using Features = pcl::PointCloud<pcl::FPFHSignature33>;
-constexpr double kVoxel_m = 0.05;
+constexpr double kVoxel_m = 0.05;  // as the requests' clouds have
 
 Points::Ptr points_of(const Cloud& cloud) {
   Points::Ptr points(new Points);

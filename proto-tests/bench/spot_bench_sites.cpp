@@ -8,13 +8,14 @@
 
 #include "proto-tests/replay/timeline.hpp"
 #include "proto-tests/replay/truth.hpp"
-#include "proto-tests/sim/random.hpp"
+#include "proto-tests/sim/base/random.hpp"
 
 namespace liloc::bench {
 namespace {
 
 using sim::SiteKind;
 
+// By hand: sites that are covered well, and a corridor that two people pass each other in.
 constexpr double kFloorPerLidar_m2 = 25, kNarrowest_m = 2.2;
 // World 2 as recordings/hall-sparse (48 m2 a LiDAR) and hall-crowded (35): offices and halls, two to four.
 constexpr double kOtherLow_m2 = 30, kOtherHigh_m2 = 60;

@@ -20,7 +20,7 @@ namespace liloc::bench {
 namespace {
 
 constexpr StampNs kHold_ns = from_ms(100);  // longest wait for the ceiling; the server's --hold-ms
-constexpr std::size_t kRecentFrames = 4;
+constexpr std::size_t kRecentFrames = 4;    // of a LiDAR, that show a request's overlap; by hand
 
 struct Asked {
   SpotRequest request;

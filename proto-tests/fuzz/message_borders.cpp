@@ -1,9 +1,9 @@
 // Every message that is read from the wire: the bytes, DDS's own decoding, the domain's values.
-#include "common/wire/cdr.hpp"
-#include "common/wire/convert_sensors.hpp"
-#include "common/wire/convert_spot.hpp"
-#include "common/wire/convert_status.hpp"
-#include "common/wire/tests/samples.hpp"
+#include "common/wire/dds/cdr.hpp"
+#include "common/wire/sensors/convert_sensors.hpp"
+#include "common/wire/spots/convert_spot.hpp"
+#include "common/wire/spots/convert_status.hpp"
+#include "common/wire/spots/tests/samples.hpp"
 #include "proto-tests/fuzz/border.hpp"
 
 namespace liloc::fuzz {

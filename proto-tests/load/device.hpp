@@ -7,11 +7,11 @@
 
 #include "client/engine/request_schedule.hpp"
 #include "client/session/session_clock.hpp"
-#include "common/wire/client_link.hpp"
+#include "common/wire/spots/client_link.hpp"
 #include "proto-tests/load/outcome.hpp"
 #include "proto-tests/load/plan.hpp"
 #include "proto-tests/load/script.hpp"
-#include "proto-tests/sim/random.hpp"
+#include "proto-tests/sim/base/random.hpp"
 
 namespace liloc::load {
 

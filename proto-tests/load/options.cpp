@@ -7,7 +7,7 @@
 namespace liloc::load {
 namespace {
 
-constexpr int kMostClients = 1000;
+constexpr int kMostClients = 1000;  // by hand
 
 Status within(double value, double low, double high, const char* name) {
   if (value >= low && value <= high) return {};  // NaN is not

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/protocol/spot.hpp"
-#include "proto-tests/sim/options.hpp"
+#include "proto-tests/sim/base/options.hpp"
 
 namespace liloc::load {
 

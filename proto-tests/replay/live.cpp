@@ -77,7 +77,7 @@ Status send(const Streams& streams, const Recording& recording, const Event& eve
 
 /// Sleeps until `due`, a little at a time, so that a signal or a dead child is noticed.
 Status sleep_until(Clock::time_point due, Fleet& fleet) {
-  constexpr auto kLook = std::chrono::milliseconds(50);
+  constexpr auto kLook = std::chrono::milliseconds(50);  // by hand: a stop seems at once
   for (;;) {
     if (stop_requested()) return fail("replay: stopped by a signal");
     const auto now = Clock::now();

@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "common/base/stop_signals.hpp"
-#include "common/wire/participant.hpp"
+#include "common/wire/dds/participant.hpp"
 
 extern char** environ;
 

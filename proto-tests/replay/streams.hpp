@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/recording/recording.hpp"
-#include "common/wire/sensor_publishers.hpp"
+#include "common/wire/sensors/sensor_publishers.hpp"
 
 namespace liloc::replay {
 

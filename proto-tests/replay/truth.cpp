@@ -12,6 +12,8 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
+// Yardsticks, by hand: points overlap within one and a half voxels; ranges are those of DepthOptions and of a
+// device's default.
 constexpr double kVoxelM = 0.05, kNearM = 0.075, kMinRangeM = 0.25, kCeilingRangeM = 8.5, kDeviceRangeM = 6.0;
 constexpr StampNs kFrameTolerance_ns = from_ms(5), kCeilingTolerance_ns = from_ms(100);
 

@@ -1,7 +1,8 @@
+#include "proto-tests/sim/other_mount.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "proto-tests/sim/other_world.hpp"
 #include "proto-tests/sim/rig.hpp"
 
 namespace liloc::sim {

@@ -1,6 +1,6 @@
 #pragma once
 #include "common/geometry/cloud.hpp"
-#include "proto-tests/sim/layout.hpp"
+#include "proto-tests/sim/site/layout.hpp"
 
 namespace liloc::sim {
 

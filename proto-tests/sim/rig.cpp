@@ -2,15 +2,15 @@
 
 #include <cmath>
 
-#include "proto-tests/sim/inertial.hpp"
-#include "proto-tests/sim/other_world.hpp"
+#include "proto-tests/sim/motion/inertial.hpp"
+#include "proto-tests/sim/other_mount.hpp"
 
 namespace liloc::sim {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kFromWall_m = 0.35, kFromCeiling_m = 0.05;
-constexpr double kCarriedHz = 15, kRobotHz = 10;
+constexpr double kFromWall_m = 0.35, kFromCeiling_m = 0.05;  // by hand
+constexpr double kCarriedHz = 15, kRobotHz = 10;             // as options.hpp says
 
 Camera camera_of(const SimOptions& options) {
   const auto focal = [](int pixels, double fov_deg) { return 0.5 * pixels / std::tan(0.5 * radians(fov_deg)); };

@@ -1,7 +1,7 @@
 #pragma once
 // The ceiling LiDARs and the devices' sensors.
 #include "common/recording/recording.hpp"
-#include "proto-tests/sim/options.hpp"
+#include "proto-tests/sim/base/options.hpp"
 
 namespace liloc::sim {
 

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto-tests/sim/depth_sensor.hpp"
 #include "proto-tests/sim/reference_scan.hpp"
 #include "proto-tests/sim/rig.hpp"
+#include "proto-tests/sim/sensors/depth_sensor.hpp"
 #include "proto-tests/sim/world.hpp"
 
 namespace liloc::sim {
 namespace {
 
-constexpr StampNs kEpochNs = 1'700'000'000'000'000'000;
-constexpr double kFirstDeviceFrame_s = 0.05;
-constexpr double kLidarJitter_s = 0.002;
+constexpr StampNs kEpochNs = 1'700'000'000'000'000'000;  // of seed 0: a date in 2023, as sensors stamp
+constexpr double kFirstDeviceFrame_s = 0.05;             // a ceiling frame is there before it
+constexpr double kLidarJitter_s = 0.002;                 // most that a frame is off its period; by hand
 
 enum class Source { lidar, device, imu };
 

@@ -9,7 +9,7 @@
 #include "common/geometry/camera.hpp"
 #include "common/geometry/cloud.hpp"
 #include "common/recording/recording.hpp"
-#include "proto-tests/sim/options.hpp"
+#include "proto-tests/sim/base/options.hpp"
 
 namespace liloc::sim {
 

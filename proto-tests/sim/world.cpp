@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "proto-tests/sim/other_world.hpp"
+#include "proto-tests/sim/motion/other_people.hpp"
 
 namespace liloc::sim {
 namespace {
@@ -13,7 +13,7 @@ constexpr double kBodyRadius_m = 0.38;  // floor plan clearance: a body and some
 constexpr double kArmLength_m = 0.42;   // from a carrier's middle to the device
 constexpr double kRobotBack_m = 0.18;   // from a robot's middle to its sensor
 constexpr double kStep_m = 0.7;         // of a walking person
-constexpr double kRobotHeight_m = 0.8;
+constexpr double kRobotHeight_m = 0.8;  // of its sensor, as options.hpp says
 
 WalkStyle device_style(Random& random, const SimOptions& options) {
   WalkStyle style;

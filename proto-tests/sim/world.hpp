@@ -1,9 +1,9 @@
 #pragma once
 // All bodies of a simulated site and where they are at a time.
-#include "proto-tests/sim/inertial.hpp"
-#include "proto-tests/sim/layout.hpp"
-#include "proto-tests/sim/people.hpp"
-#include "proto-tests/sim/ray_caster.hpp"
+#include "proto-tests/sim/motion/inertial.hpp"
+#include "proto-tests/sim/motion/people.hpp"
+#include "proto-tests/sim/shapes/ray_caster.hpp"
+#include "proto-tests/sim/site/layout.hpp"
 
 namespace liloc::sim {
 

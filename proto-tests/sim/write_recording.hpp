@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "common/geometry/cloud.hpp"
-#include "proto-tests/sim/options.hpp"
+#include "proto-tests/sim/base/options.hpp"
 
 namespace liloc::sim {
 

@@ -9,8 +9,8 @@
 namespace liloc::answers {
 namespace {
 
-constexpr std::string_view kMagic = "LILOCANS";
-constexpr std::uint32_t kVersion = 1;  ///< raised when fields.hpp changes
+constexpr std::string_view kMagic = "LILOCANS";  // at the start of every file
+constexpr std::uint32_t kVersion = 1;            ///< raised when fields.hpp changes
 constexpr std::size_t kHead = kMagic.size() + sizeof(kVersion), kMostBytes = std::size_t{512} << 20;
 
 constexpr std::size_t kMostPoints = kMostCloudBytes;

@@ -13,6 +13,8 @@ namespace liloc::answers {
 template <class V, class T>
 concept Of = std::same_as<std::remove_const_t<V>, T>;
 
+// So that a damaged file ends early: of clouds and poses as idl/liloc.idl has them, of the rest far more than a
+// server keeps; by hand.
 constexpr std::size_t kMostText = 4096, kMostCloudBytes = 262'144, kMostLocalPoses = 256, kMostTracks = 64,
                       kMostSpots = 64, kMostCells = 1'000'000;
 

@@ -8,6 +8,7 @@
 
 namespace liloc::answers {
 
+// As in fields.hpp: a site has few LiDARs, and a session keeps moments for its spots alone.
 constexpr std::size_t kMostLidars = 256, kMostMoments = 64;
 
 /// Numbers the parts of some snapshots.

@@ -28,14 +28,16 @@ void settle_standby(const CLI::App& app, const Raw& raw, ServerOptions& options)
   options.state_file = raw.state.empty() ? state_file_of(options.site_file, raw.standby) : raw.state;
 }
 
-void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
+void declare_site(CLI::App& app, ServerOptions& options, Raw& raw) {
   app.set_version_flag("--version", LILOC_VERSION);
   app.add_option("--site", options.site_file, "Site description: the ceiling LiDARs and where they hang")
       ->required();
   app.add_option(
       "--state", raw.state,
       "File of what is learned of the site, or none; else beside the site: x/site.json, x/site.state.json");
+}
 
+void declare_network(CLI::App& app, ServerOptions& options, Raw& raw) {
   auto* network = app.add_option_group("network");
   network->add_option("--domain", options.seat.domain, "DDS domain")
       ->check(in_range(0, 230))
@@ -52,7 +54,9 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
       ->capture_default_str();
   network->add_flag("--standby", raw.standby,
                     "Beside another server on this host; --server-id is then NAME-standby unless it is given");
+}
 
+void declare_method(CLI::App& app, ServerOptions& options, Raw& raw) {
   auto* method = app.add_option_group("localization");
   method->add_option("--voxel", options.localizer.voxel_size_m, "Voxel size of the global cloud, m")
       ->check(in_range(0.01, 0.5))
@@ -85,7 +89,9 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   method->add_option("--seed", options.localizer.seed, "Seed of all randomness")
       ->check(command::any_seed())
       ->capture_default_str();
+}
 
+void declare_load(CLI::App& app, ServerOptions& options, Raw& raw) {
   auto* load = app.add_option_group("load");
   load->add_option("--workers", options.service.workers, "Requests worked on at once")
       ->check(in_range(1, 64))
@@ -105,7 +111,10 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   load->add_option("--hold-ms", raw.hold_ms, "Longest wait for the ceiling's next frame, ms")
       ->check(in_range(0, 1000))
       ->capture_default_str();
+}
 
+/// What it tells, and where.
+void declare_outputs(CLI::App& app, ServerOptions& options, Raw& raw) {
   app.add_option(
       "--save-answers", raw.save_answers,
       "DIR[:refused|all]: keep what was not verified, or all, for liloc explain; the newest 200, 512 MiB");
@@ -130,6 +139,14 @@ void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
   app.add_option("--status-every", options.status_every_s, "Seconds between status lines; 0: none")
       ->check(in_range(0.0, 86'400.0))
       ->capture_default_str();
+}
+
+void declare(CLI::App& app, ServerOptions& options, Raw& raw) {
+  declare_site(app, options, raw);
+  declare_network(app, options, raw);
+  declare_method(app, options, raw);
+  declare_load(app, options, raw);
+  declare_outputs(app, options, raw);
 }
 
 Status set_variants(const Raw& raw, LocalizerOptions& localizer) {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common/base/log.hpp"
-#include "common/wire/participant.hpp"
+#include "common/wire/dds/participant.hpp"
 #include "server/answers/store.hpp"
 #include "server/localization/localizer.hpp"
 #include "server/service/service_options.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <thread>
 
-#include "common/wire/status.hpp"
+#include "common/wire/spots/status.hpp"
 #include "server/app/options.hpp"
 #include "server/app/site_state.hpp"
 #include "server/global_cloud/global_cloud.hpp"

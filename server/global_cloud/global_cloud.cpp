@@ -1,7 +1,6 @@
 #include "server/global_cloud/global_cloud.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 namespace liloc {
 namespace {
@@ -129,10 +128,11 @@ std::shared_ptr<const StitchedRoom> GlobalCloud::room_of(const std::vector<Frame
   const StampNs stamp_ns = std::ranges::max(frames, {}, &LidarFrame::stamp_ns)->stamp_ns();
   std::erase_if(all_rooms_, [](const auto& room) { return room.expired(); });
   const auto crowding = static_cast<StampNs>(std::max<std::size_t>(1, all_rooms_.size() / kRoomsAtEase));
-  for (const auto& room : rooms_ | std::views::reverse)
-    if (gap(room->stamp_ns(), stamp_ns) < crowding * options_.least_renewal_ns &&
-        of_same_lidars(room->parts(), parts))
-      return room;
+  const auto newest = std::find_if(rooms_.rbegin(), rooms_.rend(), [&](const auto& room) {
+    return gap(room->stamp_ns(), stamp_ns) < crowding * options_.least_renewal_ns &&
+           of_same_lidars(room->parts(), parts);
+  });
+  if (newest != rooms_.rend()) return *newest;
   rooms_.push_back(
       std::make_shared<const StitchedRoom>(std::move(parts), options_.snapshot, prepared_, stamp_ns));
   all_rooms_.push_back(rooms_.back());

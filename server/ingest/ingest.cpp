@@ -5,7 +5,7 @@
 
 #include "common/base/line_limit.hpp"
 #include "common/base/log.hpp"
-#include "common/wire/sensors.hpp"
+#include "common/wire/sensors/sensors.hpp"
 #include "server/ingest/lidar_monitor.hpp"
 
 namespace liloc {

@@ -13,8 +13,8 @@
 
 #include "common/geometry/camera.hpp"
 #include "common/geometry/cloud.hpp"
-#include "common/wire/dispatcher.hpp"
-#include "common/wire/status.hpp"
+#include "common/wire/dds/dispatcher.hpp"
+#include "common/wire/spots/status.hpp"
 #include "server/ingest/frame_content.hpp"
 #include "server/ingest/site_clocks.hpp"
 

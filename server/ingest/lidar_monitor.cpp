@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::ptrdiff_t kJudged = 3;  // frames, before anything is said of what they show
 constexpr double kFewestReturns =
-    0.01;  // of the pixels; the worst real sensors had 30 % (proto-tests/sim/SENSORS.md)
+    0.01;  // of the pixels; the worst real sensors had 30 % (proto-tests/sim/sensors/SENSORS.md)
 constexpr double kLeastUsable = 0.1;  // of the returns
 // A LiDAR on a ceiling sees the floor or a wall farther than that; a unit a quarter of the right one does not.
 constexpr double kLeastFar_m = 1.5;

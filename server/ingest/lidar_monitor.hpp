@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "common/wire/status.hpp"
+#include "common/wire/spots/status.hpp"
 #include "server/ingest/frame_content.hpp"
 
 namespace liloc {

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "common/wire/server_link.hpp"
+#include "common/wire/spots/server_link.hpp"
 
 namespace liloc {
 

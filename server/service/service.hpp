@@ -8,7 +8,7 @@
 //   dispatcher.stop();
 #include <memory>
 
-#include "common/wire/server_link.hpp"
+#include "common/wire/spots/server_link.hpp"
 #include "server/service/request_scheduler.hpp"
 
 namespace liloc {

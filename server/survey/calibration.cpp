@@ -12,7 +12,7 @@ namespace {
 
 // 3 deg of a wall at 6 m are 0.3 m, which is how far a reference's index reaches.
 constexpr double kGuessDistance_m = 0.30;
-constexpr int kGuessIterations = 40;
+constexpr int kGuessIterations = 40;  // by hand
 // Without a scan the rest of the room is what other ceiling LiDARs see: a small part of the view suffices.
 constexpr double kLeastOverlapWithout = 0.08;
 

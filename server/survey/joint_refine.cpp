@@ -142,7 +142,7 @@ class Normals {
   }
 
   Eigen::LDLT<Eigen::MatrixXd> solver_;
-  static constexpr double kFixed = 1e12;
+  static constexpr double kFixed = 1e12;  // information that holds a pose where it is
   std::vector<JointLidar>& lidars_;
   const JointOptions& options_;
   Eigen::MatrixXd H_;

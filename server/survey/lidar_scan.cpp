@@ -9,8 +9,8 @@
 namespace liloc::survey {
 namespace {
 
-constexpr std::size_t kFewestPoints = 500;
-constexpr double kNearest_m = 0.25;  // DepthOptions::min_range_m: no point is nearer
+constexpr std::size_t kFewestPoints = 500;  // by hand
+constexpr double kNearest_m = 0.25;         // DepthOptions::min_range_m: no point is nearer
 
 }  // namespace
 

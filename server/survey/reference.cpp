@@ -10,7 +10,7 @@
 namespace liloc::survey {
 namespace {
 
-constexpr std::size_t kFewestPoints = 500;
+constexpr std::size_t kFewestPoints = 500;             // by hand
 constexpr double kSmallest_m = 0.5, kLargest_m = 500;  // a room in metres; in millimetres it is 4000 long
 constexpr double kReach_m = 0.3;                       // of the widest pairs of a refinement
 

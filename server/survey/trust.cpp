@@ -8,10 +8,10 @@
 namespace liloc::survey {
 namespace {
 
-constexpr double kPaired_m = 0.05;
-constexpr float kSight_m = 0.03F;   // a conflict is twice that, and 2 % of the depth, before a surface
-constexpr double kMedium_m = 0.08;  // one point in four: neighbours err alike
-constexpr int kViewFactor = 2;
+constexpr double kPaired_m = 0.05;   // a point on a surface, plane to point; by hand
+constexpr float kSight_m = 0.03F;    // a conflict is twice that, and 2 % of the depth, before a surface
+constexpr double kMedium_m = 0.08;   // one point in four: neighbours err alike
+constexpr int kViewFactor = 2;       // rows and columns that one of the view stands for; by hand
 constexpr double kFarthest_m = 8.5;  // as DepthOptions::max_range_m
 
 }  // namespace

@@ -21,9 +21,9 @@ struct CalibrateArguments {
   bool json = false;
 };
 
-constexpr std::size_t kFewestFrames = 5;
-constexpr int kMostFrames = 120;    // in a pixel's mean: what remains of 1 cm of noise is a millimetre
-constexpr double kFarthest = 1000;  // m or degrees, of a rough start: far beyond any site
+constexpr std::size_t kFewestFrames = 5;  // by hand
+constexpr int kMostFrames = 120;          // in a pixel's mean: what remains of 1 cm of noise is a millimetre
+constexpr double kFarthest = 1000;        // m or degrees, of a rough start: far beyond any site
 
 /// The mean of what stands still before a LiDAR.
 Result<DepthImage> standing(const LidarRecording& lidar, const Camera& camera, std::size_t most_frames,

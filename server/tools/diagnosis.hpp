@@ -7,8 +7,8 @@
 
 #include "common/credentials/credentials.hpp"
 #include "common/geometry/camera.hpp"
-#include "common/wire/participant.hpp"
-#include "common/wire/status.hpp"
+#include "common/wire/dds/participant.hpp"
+#include "common/wire/spots/status.hpp"
 
 namespace liloc::toolbox {
 

@@ -32,7 +32,7 @@ std::optional<long> setting(const std::string& file) {
   return in >> value ? std::optional(value) : std::nullopt;
 }
 
-constexpr std::size_t kMostUnreadable = 8;
+constexpr std::size_t kMostUnreadable = 8;  // texts that are kept, of statuses that cannot be read; by hand
 
 Result<Heard> listen(const DoctorArguments& arguments) {
   const auto participant = wire::Participant::create(arguments.seat);

@@ -5,7 +5,7 @@
 
 #include "common/geometry/depth.hpp"
 #include "common/recording/writer.hpp"
-#include "common/wire/sensors.hpp"
+#include "common/wire/sensors/sensors.hpp"
 
 namespace liloc::toolbox {
 namespace {

@@ -11,7 +11,7 @@
 #include "common/base/bounded_queue.hpp"
 #include "common/recording/imu_table.hpp"
 #include "common/recording/recording.hpp"
-#include "common/wire/dispatcher.hpp"
+#include "common/wire/dds/dispatcher.hpp"
 
 namespace liloc::toolbox {
 

@@ -7,7 +7,7 @@
 namespace liloc::view {
 namespace {
 
-constexpr double kFirst_ms = 0.25, kBinsADoubling = 4;
+constexpr double kFirst_ms = 0.25, kBinsADoubling = 4;  // edges of the bins of latency; by hand
 
 std::int64_t index_of(OutcomeChart::Time at) {
   return at.time_since_epoch() / std::chrono::nanoseconds(kColumn);

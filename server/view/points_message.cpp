@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the message is written as it lies in memory");
 
-constexpr float kSteps = 65'535;
+constexpr float kSteps = 65'535;  // of a coordinate over the box: 16 bits
 
 template <class T>
 void append(std::string& to, const T& value) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/wire/status.hpp"
+#include "common/wire/spots/status.hpp"
 #include "server/service/request_scheduler.hpp"
 
 namespace liloc::web {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "common/wire/server_link.hpp"
+#include "common/wire/spots/server_link.hpp"
 
 namespace liloc::test {
 

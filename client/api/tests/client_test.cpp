@@ -10,7 +10,7 @@
 #include "client/api/tests/by_heart_server.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/testing/walk.hpp"
-#include "common/wire/status.hpp"
+#include "common/wire/spots/status.hpp"
 
 namespace liloc {
 namespace {

@@ -10,7 +10,7 @@
 #include "client/api/tests/by_heart_server.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/testing/box_room.hpp"
-#include "common/wire/sensor_publishers.hpp"
+#include "common/wire/sensors/sensor_publishers.hpp"
 
 namespace liloc {
 namespace {

@@ -4,6 +4,9 @@
 
 namespace liloc {
 
+/// Width of the Geman-McClure kernel, of the squared limit: a pair at half the distance weighs a quarter.
+constexpr float kKernelShare = 0.25F;
+
 /// Two clouds to be matched, with the index of the one that stands still.
 struct Side {
   const Cloud& target;
@@ -36,7 +39,7 @@ void for_each_pair(const Side& side, const Pose& T, double distance_m, double mi
   const bool with_normals = side.source.has_normals() && side.target.has_normals();
   const auto agreement = static_cast<float>(min_normal_agreement);
   const auto limit = static_cast<float>(distance_m * distance_m);
-  const double width = 0.25 * limit;  // Geman-McClure: a pair at half the distance weighs a quarter
+  const double width = kKernelShare * limit;
   for (std::size_t i = 0; i < side.source.size(); ++i) {
     const Eigen::Vector3f arm = Tf.linear() * side.source.points[i];
     const Eigen::Vector3f p = arm + Tf.translation();

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "common/registration/points/simd.hpp"
+#include "common/registration/refine/pairs.hpp"
 
 namespace liloc {
 namespace {
@@ -32,7 +33,7 @@ LILOC_WIDE int weigh_pairs(const Vectors& arms, const Vectors& normals, const Ve
   const float *sx = normals.x.data(), *sy = normals.y.data(), *sz = normals.z.data();
   const float *ox = offsets.x.data(), *oy = offsets.y.data(), *oz = offsets.z.data();
   const float *tx = target_normals.x.data(), *ty = target_normals.y.data(), *tz = target_normals.z.data();
-  const float width = 0.25F * limit;  // Geman-McClure: a pair at half the distance weighs a quarter
+  const float width = kKernelShare * limit;
   const std::size_t count = arms.x.size(), stride = count;
   int pairs = 0;
 #pragma omp simd reduction(+ : pairs)

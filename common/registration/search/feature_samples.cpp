@@ -19,8 +19,8 @@ constexpr float kNormalsAgree = 0.85F;  // cosine, once posed
 constexpr float kLeastTurn = 0.25F;     // squared; normals along the line tell no turn about it
 constexpr float kAgrees = 2.5F;         // spacings: so near its partner, a match agrees with a pose
 constexpr float kMatchWorth = 4.0F;     // if all matches agree, in fields full of surface
-constexpr std::size_t kMatchesAsked = 300, kFirstPoints = 60;
-constexpr float kPromise = 0.6F;  // of the floor, after the first points
+constexpr std::size_t kMatchesAsked = 300, kFirstPoints = 60;  // of each pose, in this order; by hand
+constexpr float kPromise = 0.6F;                               // of the floor, after the first points
 
 using Pose3f = Eigen::Isometry3f;
 

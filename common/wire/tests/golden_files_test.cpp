@@ -8,10 +8,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/wire/cdr.hpp"
-#include "common/wire/convert_spot.hpp"
-#include "common/wire/convert_status.hpp"
-#include "samples.hpp"
+#include "common/wire/dds/cdr.hpp"
+#include "common/wire/spots/convert_spot.hpp"
+#include "common/wire/spots/convert_status.hpp"
+#include "common/wire/spots/tests/samples.hpp"
 
 namespace liloc::wire {
 namespace {

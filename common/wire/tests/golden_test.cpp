@@ -4,13 +4,13 @@
 
 #include <thread>
 
-#include "common/wire/convert.hpp"
-#include "common/wire/convert_ros.hpp"
-#include "common/wire/convert_sensors.hpp"
-#include "common/wire/convert_spot.hpp"
-#include "common/wire/convert_status.hpp"
-#include "common/wire/typed.hpp"
-#include "samples.hpp"
+#include "common/wire/dds/convert.hpp"
+#include "common/wire/dds/typed.hpp"
+#include "common/wire/ros/convert_ros.hpp"
+#include "common/wire/sensors/convert_sensors.hpp"
+#include "common/wire/spots/convert_spot.hpp"
+#include "common/wire/spots/convert_status.hpp"
+#include "common/wire/spots/tests/samples.hpp"
 
 namespace liloc::wire {
 namespace {

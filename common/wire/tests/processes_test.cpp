@@ -10,11 +10,11 @@
 #include <cstdlib>
 #include <thread>
 
-#include "common/wire/client_link.hpp"
-#include "common/wire/sensor_publishers.hpp"
-#include "common/wire/sensors.hpp"
-#include "common/wire/server_link.hpp"
-#include "samples.hpp"
+#include "common/wire/sensors/sensor_publishers.hpp"
+#include "common/wire/sensors/sensors.hpp"
+#include "common/wire/spots/client_link.hpp"
+#include "common/wire/spots/server_link.hpp"
+#include "common/wire/spots/tests/samples.hpp"
 
 namespace liloc::wire {
 namespace {

@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "common/wire/participant.hpp"
-#include "site_processes.hpp"
+#include "common/wire/dds/participant.hpp"
+#include "common/wire/tests/site_processes.hpp"
 
 namespace liloc::wire {
 namespace {

@@ -1,4 +1,4 @@
-#include "site_processes.hpp"
+#include "common/wire/tests/site_processes.hpp"
 
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -10,14 +10,14 @@
 #include <new>
 #include <thread>
 
-#include "common/wire/client_link.hpp"
-#include "common/wire/convert_spot.hpp"
-#include "common/wire/security.hpp"
-#include "common/wire/server_link.hpp"
-#include "common/wire/status.hpp"
-#include "common/wire/topics.hpp"
-#include "common/wire/typed.hpp"
-#include "samples.hpp"
+#include "common/wire/dds/security.hpp"
+#include "common/wire/dds/topics.hpp"
+#include "common/wire/dds/typed.hpp"
+#include "common/wire/spots/client_link.hpp"
+#include "common/wire/spots/convert_spot.hpp"
+#include "common/wire/spots/server_link.hpp"
+#include "common/wire/spots/status.hpp"
+#include "common/wire/spots/tests/samples.hpp"
 
 namespace liloc::wire {
 namespace {

@@ -1,8 +1,8 @@
 // The laws that tie trajectory, IMU and depth together.
 #include <gmock/gmock.h>
 
-#include "proto-tests/sim/depth_sensor.hpp"
-#include "proto-tests/sim/inertial.hpp"
+#include "proto-tests/sim/motion/inertial.hpp"
+#include "proto-tests/sim/sensors/depth_sensor.hpp"
 #include "proto-tests/sim/simulation.hpp"
 
 namespace liloc::sim {

@@ -1,11 +1,10 @@
-#include "proto-tests/sim/other_world.hpp"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "common/geometry/depth.hpp"
+#include "proto-tests/sim/motion/other_people.hpp"
 #include "proto-tests/sim/simulation.hpp"
 
 namespace liloc::sim {

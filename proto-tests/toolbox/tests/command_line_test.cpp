@@ -11,9 +11,10 @@
 #include <thread>
 
 #include "common/recording/files.hpp"
-#include "common/wire/status.hpp"
+#include "common/wire/spots/status.hpp"
 #include "proto-tests/replay/tests/small_recording.hpp"
 #include "proto-tests/toolbox/tests/program_test.hpp"
+#include "server/tools/tests/cloud_texts.hpp"
 
 namespace liloc::toolbox {
 namespace {
@@ -166,52 +167,9 @@ std::vector<Eigen::Vector3d> corner_points() {
   return points;
 }
 
-template <class T>
-std::string bytes_of(double value, bool big) {
-  const T typed = static_cast<T>(value);
-  std::string bytes(reinterpret_cast<const char*>(&typed), sizeof(T));
-  if (big) std::reverse(bytes.begin(), bytes.end());
-  return bytes;
-}
-
-/// One PLY with a property and an element in front of what is wanted, as other programs write it.
-template <class T>
-std::string ply_of(const std::string& format, const std::string& type) {
-  const auto points = corner_points();
-  const bool ascii = format == "ascii", big = format == "binary_big_endian";
-  std::string text = fmt::format(
-      "ply\r\nformat {} 1.0\r\ncomment x\r\nobj_info num_cols 7\r\nelement camera 1\r\nproperty list uchar "
-      "short parts\r\nelement vertex {}\r\nproperty uchar red\r\nproperty {} x\r\nproperty {} y\r\nproperty {} "
-      "z\r\nelement face 0\r\nproperty list uchar int vertex_indices\r\nend_header\r\n",
-      format, points.size(), type, type, type);
-  text +=
-      ascii ? "2 5 6\n"
-            : bytes_of<std::uint8_t>(2, big) + bytes_of<std::int16_t>(5, big) + bytes_of<std::int16_t>(6, big);
-  for (const auto& p : points)
-    text += ascii ? fmt::format("9 {} {} {}\n", p.x(), p.y(), p.z())
-                  : bytes_of<std::uint8_t>(9, big) + bytes_of<T>(p.x(), big) + bytes_of<T>(p.y(), big) +
-                        bytes_of<T>(p.z(), big);
-  return text;
-}
-
-template <class T>
-std::string pcd_of(const std::string& data, char type) {
-  const auto points = corner_points();
-  std::string text = fmt::format(
-      "VERSION .7\nFIELDS rgb x y z\nSIZE 4 {0} {0} {0}\nTYPE U {1} {1} {1}\nCOUNT 1 1 1 1\nWIDTH {2}\nHEIGHT "
-      "1\n"
-      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {2}\nDATA {3}\n",
-      sizeof(T), type, points.size(), data);
-  for (const auto& p : points)
-    text += data == "ascii" ? fmt::format("9 {} {} {}\n", p.x(), p.y(), p.z())
-                            : bytes_of<std::uint32_t>(9, false) + bytes_of<T>(p.x(), false) +
-                                  bytes_of<T>(p.y(), false) + bytes_of<T>(p.z(), false);
-  return text;
-}
-
 TEST_F(CommandLine, CloudsOfEveryCoordinateTypeAreRead) {
   const std::string reference = path("reference.ply");
-  ASSERT_TRUE(write_file(reference, ply_of<float>("ascii", "float")));
+  ASSERT_TRUE(write_file(reference, test::ply_of<float>(corner_points(), "ascii", "float")));
   const auto aligned = [&](const std::string& file) {
     const Outcome outcome = liloc("align --json " + file + " " + reference);
     EXPECT_EQ(outcome.exit_code, 0) << file << outcome.out;
@@ -220,14 +178,14 @@ TEST_F(CommandLine, CloudsOfEveryCoordinateTypeAreRead) {
   const auto wanted = aligned(reference);
   EXPECT_GT(wanted["fitness"], 0.99);
   const std::pair<const char*, std::string> files[] = {
-      {"a.ply", ply_of<double>("ascii", "double")},
-      {"b.ply", ply_of<double>("binary_little_endian", "double")},
-      {"c.ply", ply_of<double>("binary_big_endian", "float64")},
-      {"d.ply", ply_of<float>("binary_little_endian", "float32")},
-      {"e.ply", ply_of<float>("binary_big_endian", "float")},
-      {"a.pcd", pcd_of<double>("ascii", 'F')},
-      {"b.pcd", pcd_of<double>("binary", 'F')},
-      {"c.pcd", pcd_of<float>("binary", 'F')}};
+      {"a.ply", test::ply_of<double>(corner_points(), "ascii", "double")},
+      {"b.ply", test::ply_of<double>(corner_points(), "binary_little_endian", "double")},
+      {"c.ply", test::ply_of<double>(corner_points(), "binary_big_endian", "float64")},
+      {"d.ply", test::ply_of<float>(corner_points(), "binary_little_endian", "float32")},
+      {"e.ply", test::ply_of<float>(corner_points(), "binary_big_endian", "float")},
+      {"a.pcd", test::pcd_of<double>(corner_points(), "ascii", 'F')},
+      {"b.pcd", test::pcd_of<double>(corner_points(), "binary", 'F')},
+      {"c.pcd", test::pcd_of<float>(corner_points(), "binary", 'F')}};
   for (const auto& [name, text] : files) {
     ASSERT_TRUE(write_file(folder_.path() / name, text));
     const auto got = aligned(path(name));

@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "common/credentials/tests/keystore.hpp"
-#include "common/wire/client_link.hpp"
-#include "common/wire/sensor_publishers.hpp"
+#include "common/wire/sensors/sensor_publishers.hpp"
+#include "common/wire/spots/client_link.hpp"
 
 namespace liloc {
 namespace {

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "common/codec/codec.hpp"
-#include "common/wire/client_link.hpp"
-#include "common/wire/sensor_publishers.hpp"
+#include "common/wire/sensors/sensor_publishers.hpp"
+#include "common/wire/spots/client_link.hpp"
 #include "server/app/server.hpp"
 #include "server/view/tests/browser.hpp"
 #include "server/view/tests/points.hpp"

@@ -10,8 +10,8 @@
 
 #include "common/codec/codec.hpp"
 #include "common/recording/tests/temporary_folder.hpp"
-#include "common/wire/client_link.hpp"
-#include "common/wire/sensor_publishers.hpp"
+#include "common/wire/sensors/sensor_publishers.hpp"
+#include "common/wire/spots/client_link.hpp"
 #include "server/answers/answer_file.hpp"
 
 namespace liloc {

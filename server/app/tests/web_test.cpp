@@ -11,7 +11,7 @@
 #include <set>
 #include <thread>
 
-#include "common/wire/sensor_publishers.hpp"
+#include "common/wire/sensors/sensor_publishers.hpp"
 #include "server/app/server.hpp"
 #include "server/web/tests/http.hpp"
 

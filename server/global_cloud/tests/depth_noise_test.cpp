@@ -16,8 +16,8 @@ struct Sensor {
 class NoiseLaw : public testing::TestWithParam<std::tuple<Sensor, int>> {};
 
 TEST_P(NoiseLaw, IsWhatTheSensorHas) {
-  const auto& [sensor, seed] = GetParam();
-  std::mt19937 rng(static_cast<unsigned>(seed));
+  const Sensor& sensor = std::get<0>(GetParam());
+  std::mt19937 rng(static_cast<unsigned>(std::get<1>(GetParam())));
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> range(0.8, 7.5), share(0, 1);
   NoiseMeter meter;

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-#include "common/wire/sensor_publishers.hpp"
+#include "common/wire/sensors/sensor_publishers.hpp"
 
 namespace liloc {
 namespace {

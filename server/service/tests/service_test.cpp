@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "common/base/log.hpp"
-#include "common/wire/client_link.hpp"
+#include "common/wire/spots/client_link.hpp"
 
 namespace liloc {
 namespace {

@@ -82,10 +82,10 @@ TEST_P(SightKernelLaw, ABallReachesInWhereEachHalfSpaceSaysSo) {
   reach_into(spaces.data(), spaces.size(), centres.run(0, kCount), radii.data(), reached.data());
   std::size_t in = 0;
   for (std::size_t i = 0; i < kCount; ++i) {
-    const float margin = std::ranges::min(spaces | std::views::transform([&](const HalfSpace& s) {
-                                            return s.x * centres.x[i] + s.y * centres.y[i] +
-                                                   s.z * centres.z[i] + s.off + radii[i];
-                                          }));
+    float margin = std::numeric_limits<float>::infinity();
+    for (const HalfSpace& s : spaces)
+      margin =
+          std::min(margin, s.x * centres.x[i] + s.y * centres.y[i] + s.z * centres.z[i] + s.off + radii[i]);
     if (std::abs(margin) < 1e-5F) continue;  // rounding
     ASSERT_EQ(reached[i] != 0, margin > 0 && i != 5) << i;
     in += margin > 0;

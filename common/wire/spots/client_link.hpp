@@ -1,0 +1,47 @@
+#pragma once
+// A device's side of the conversation with the server.
+//
+//   auto link = wire::ClientLink::create(dispatcher, "robot1", {.on_reply = [](SpotReply reply) { ... }});
+//   dispatcher.start();
+//   if ((*link)->server_matched()) (*link)->send(request);
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/protocol/spot.hpp"
+#include "common/wire/dds/dispatcher.hpp"
+
+namespace liloc::wire {
+
+/// Run on the dispatcher's thread; any may be empty.
+struct ClientCallbacks {
+  std::function<void(SpotReply)> on_reply = {};        ///< to a request of this run of the client
+  std::function<void(bool matched)> on_server = {};    ///< the server came or went
+  std::function<void(std::string)> on_bad_reply = {};  ///< a reply that was dropped, and why
+  std::function<void()> on_namesake = {};  ///< another device asks under this id; at each answer to it
+};
+
+class ClientLink {
+ public:
+  /// Before the dispatcher starts; the dispatcher must outlive the link's last `send`. Error: not a valid id.
+  [[nodiscard]] static Result<std::unique_ptr<ClientLink>> create(Dispatcher& dispatcher,
+                                                                  const std::string& client_id,
+                                                                  ClientCallbacks callbacks);
+  ~ClientLink();
+  ClientLink(const ClientLink&) = delete;
+  ClientLink& operator=(const ClientLink&) = delete;
+
+  /// Never waits long (20 ms at most). `request.client_id` must be the link's. With no server matched the
+  /// request goes nowhere, and that is an error; so is a request that cannot travel (over 256 poses, 256 KiB of
+  /// cloud). Any thread.
+  [[nodiscard]] Status send(const SpotRequest& request);
+  /// Both directions are matched, so that nothing sent now is lost for want of discovery. Any thread.
+  [[nodiscard]] bool server_matched() const;
+
+ private:
+  struct Impl;
+  explicit ClientLink(std::shared_ptr<Impl> impl);
+  std::shared_ptr<Impl> impl_;
+};
+
+}  // namespace liloc::wire

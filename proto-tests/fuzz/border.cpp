@@ -35,7 +35,7 @@ class ScratchFolder {
 std::vector<Border> all_borders() {
   std::vector<Border> all;
   for (const auto make : {cloud_code_borders, message_borders, recording_borders, bag_borders, setting_borders,
-                          cloud_file_borders, floor_plan_borders}) {
+                          cloud_file_borders, floor_plan_borders, weights_borders}) {
     std::vector<Border> some = make();
     std::move(some.begin(), some.end(), std::back_inserter(all));
   }

@@ -29,6 +29,7 @@ struct Border {
 [[nodiscard]] std::vector<Border> setting_borders();
 [[nodiscard]] std::vector<Border> cloud_file_borders();
 [[nodiscard]] std::vector<Border> floor_plan_borders();
+[[nodiscard]] std::vector<Border> weights_borders();
 
 /// Ends the process with `what`, which a fuzzer takes for a crash.
 void require(bool holds, const char* what);

@@ -26,6 +26,9 @@ FleetCommand fleet_command(const Recording& recording, const ReplayOptions& opti
                             "--risk",     fmt::format("{}", options.risk)};
   fleet.server_arguments.insert(fleet.server_arguments.end(),
                                 {"--state", "none"});  // nothing from earlier replays
+  if (options.features != "fpfh")
+    fleet.server_arguments.insert(fleet.server_arguments.end(),
+                                  {"--features", options.features, "--weights", options.weights.string()});
   for (const auto& [name, value] : {std::pair{"--verify", options.verify}, std::pair{"--icp", options.icp},
                                     std::pair{"--save-answers", options.save_answers}})
     if (!value.empty()) fleet.server_arguments.insert(fleet.server_arguments.end(), {name, value});

@@ -8,6 +8,7 @@
 
 #include "client/engine/engine.hpp"
 #include "client/engine/trace.hpp"
+#include "common/learned/describer.hpp"
 #include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/replay/saved_answers.hpp"
@@ -47,7 +48,7 @@ EngineOptions engine_options(const DeviceRecording& device, const ReplayOptions&
   return engine;
 }
 
-LocalizerOptions localizer_options(const ReplayOptions& options) {
+Result<LocalizerOptions> localizer_options(const ReplayOptions& options) {
   LocalizerOptions localizer;
   localizer.method = *method_from(options.method);
   if (!options.verify.empty()) localizer.verify = *verify_from(options.verify);
@@ -57,15 +58,18 @@ LocalizerOptions localizer_options(const ReplayOptions& options) {
   localizer.risk = options.risk;
   localizer.seed = options.seed;
   localizer.threads = options.threads;
+  auto describer = learned::describer_from(options.features, options.weights, options.threads);
+  if (!describer) return tl::unexpected(describer.error());
+  localizer.describer = std::move(*describer);
   return localizer;
 }
 
 class Lockstep {
  public:
-  Lockstep(const Recording& recording, const ReplayOptions& options)
+  Lockstep(const Recording& recording, const ReplayOptions& options, const LocalizerOptions& localizer)
       : recording_(recording),
-        cloud_(recording.site, global_cloud_options_for(localizer_options(options))),
-        localizer_(cloud_, localizer_options(options), {},
+        cloud_(recording.site, global_cloud_options_for(localizer)),
+        localizer_(cloud_, localizer, {},
                    options.save_answers.empty() ? AnswerSink() : AnswerSink([this](const Answered& answered) {
                      saved_.take(answered);
                    })),
@@ -187,7 +191,9 @@ Result<RunFacts> run_lockstep(const Recording& recording, const ReplayOptions& o
                               const Progress& progress) {
   const std::vector<Event> events = timeline(recording);
   FrameReader frames(recording, events);
-  Lockstep lockstep(recording, options);
+  const auto localizer = localizer_options(options);
+  if (!localizer) return tl::unexpected(localizer.error());
+  Lockstep lockstep(recording, options, *localizer);
   if (auto status = lockstep.open(options); !status) return tl::unexpected(status.error());
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (auto status = lockstep.step(events[i], frames); !status) return tl::unexpected(status.error());

@@ -9,7 +9,7 @@ namespace liloc::replay {
 /// the same recording, options and seed give the same answers. As in the server, a request is answered once
 /// every LiDAR has delivered a frame that counts for it, or after 100 ms of recorded time; later frames profit,
 /// earlier ones do not. Writes the traces into OUT, which must be prepared. Errors: the traces cannot be
-/// written, or a stop signal.
+/// written, the weights cannot be read any more, or a stop signal.
 [[nodiscard]] Result<RunFacts> run_lockstep(const Recording& recording, const ReplayOptions& options,
                                             const Progress& progress);
 

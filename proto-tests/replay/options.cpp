@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "client/engine/engine.hpp"
+#include "common/learned/describer.hpp"
 #include "server/answers/store.hpp"
 #include "server/localization/localizer.hpp"
 
@@ -35,9 +36,12 @@ Result<ReplayOptions> ReplayOptions::validated() const {
   if (const auto works = localizer.validated(); !works) return tl::unexpected(works.error());
   if (const auto known = local_method_from(local); !known) return tl::unexpected(known.error());
   if (!codec_from(codec)) return fail("--codec: '{}' is unknown; use draco, voxel or octree", codec);
-  if (features == "learned")
-    return fail("--features: learned needs a trained model, and this version has none; use --features fpfh");
-  if (features != "fpfh") return fail("--features: '{}' is unknown; use fpfh", features);
+  if (const auto describer = learned::describer_from(features, weights, threads); !describer)
+    return tl::unexpected(describer.error());
+  if (features == "learned" && !save_answers.empty())
+    return fail(
+        "--save-answers: answers are kept without the network, so that none could be given again; leave "
+        "it out, or use --features fpfh");
   if (!save_answers.empty()) {
     const auto store = answers::store_options_from(save_answers);
     if (!store) return fail("--{}", store.error().message);

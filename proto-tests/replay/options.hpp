@@ -17,7 +17,8 @@ struct ReplayOptions {
   std::uint64_t seed = 1;
   double interval_ms = to_ms(kRequestInterval), voxel_m = 0.05;
   std::string method = "liloc", local = "cloud", features = "fpfh";
-  std::string verify, icp;  ///< empty: the method's own
+  std::string verify, icp;        ///< empty: the method's own
+  std::filesystem::path weights;  ///< of the network, for features "learned"
   double sampling = 0.5;
   double risk = 1e-3;                ///< with which a verified answer may be wrong
   std::vector<std::string> devices;  ///< ids to replay; empty: all of the recording

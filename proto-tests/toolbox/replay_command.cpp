@@ -65,8 +65,10 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--icp", options->icp, "point or plane; else the method's own");
   command->add_option("--local", options->local, "Local registration: cloud, inertial or dead-reckoning")
       ->capture_default_str();
-  command->add_option("--features", options->features, "fpfh (learned needs a model, which this version lacks)")
+  command->add_option("--features", options->features, "Of points, for RANSAC: fpfh, or learned with --weights")
       ->capture_default_str();
+  command->add_option("--weights", options->weights,
+                      "Network of --features learned, from common/learned/convert_fcgf.py");
   command->add_option("--sampling", options->sampling, "Share of feature points that RANSAC uses")
       ->capture_default_str();
   command->add_option("--device", options->devices,

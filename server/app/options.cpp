@@ -5,6 +5,7 @@
 #include "common/command/checks.hpp"
 #include "common/command/program_options.hpp"
 #include "common/command/text.hpp"
+#include "common/learned/describer.hpp"
 #include "server/app/site_state.hpp"
 
 namespace liloc {
@@ -13,8 +14,8 @@ namespace {
 using command::in_range;
 
 struct Raw {
-  std::string method = "liloc", verify, icp, state, save_answers, log_level = "info", log_format = "text",
-              metrics, page;
+  std::string method = "liloc", features = "fpfh", verify, icp, state, save_answers, log_level = "info",
+              log_format = "text", metrics, page, weights;
   int hold_ms = 100;
   bool standby = false;
 };
@@ -77,6 +78,11 @@ void declare_method(CLI::App& app, ServerOptions& options, Raw& raw) {
   method
       ->add_option("--icp", raw.icp, "Last refinement: plane, or point as in the paper; else the method's own")
       ->check(command::one_of({"plane", "point"}));
+  method->add_option("--features", raw.features, "Of points, for RANSAC: fpfh, or learned with --weights")
+      ->check(command::one_of({"fpfh", "learned"}))
+      ->capture_default_str();
+  method->add_option("--weights", raw.weights,
+                     "Network of --features learned, from common/learned/convert_fcgf.py");
   method->add_option("--sampling", options.localizer.sampling, "Share of points with features that RANSAC uses")
       ->check(in_range(0.01, 1.0))
       ->capture_default_str();
@@ -170,6 +176,9 @@ Status take(const CLI::App& app, const Raw& raw, ServerOptions& options) {
   const auto method = method_from(raw.method);
   if (!method) return tl::unexpected(method.error());
   options.localizer.method = *method;
+  auto describer = learned::describer_from(raw.features, raw.weights, options.localizer.threads);
+  if (!describer) return tl::unexpected(describer.error());
+  options.localizer.describer = std::move(*describer);
   const auto level = log::level_from(raw.log_level);
   if (!level) return fail("--log-level: {}", level.error().message);
   options.log_level = *level;
@@ -180,6 +189,10 @@ Status take(const CLI::App& app, const Raw& raw, ServerOptions& options) {
   settle_standby(app, raw, options);
   if (const auto set = set_variants(raw, options.localizer); !set) return fail("--{}", set.error().message);
   if (!raw.save_answers.empty()) {
+    if (options.localizer.describer)
+      return fail(
+          "--save-answers: answers are kept without the network, so that none could be given again; leave "
+          "it out, or use --features fpfh");
     auto store = answers::store_options_from(raw.save_answers);
     if (!store) return fail("--{}", store.error().message);
     if (store->which == answers::Which::wrong)

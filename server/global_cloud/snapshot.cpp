@@ -84,7 +84,10 @@ const std::shared_ptr<const Surfaces>& StitchedRoom::surfaces() const {
 
 const Described& StitchedRoom::described() const {
   std::call_once(described_once_, [this] {
-    described_ = describe(surfaces()->coarse, {10 * options_.voxel_size_m, options_.feature_sampling, 1});
+    DescribeOptions describing{10 * options_.voxel_size_m, options_.feature_sampling, 1};
+    describing.describer = options_.describer;
+    describing.up = up_map();
+    described_ = describe(surfaces()->coarse, describing, &surfaces()->cloud);
     has_descriptors_ = true;
   });
   return described_;

@@ -21,6 +21,7 @@ struct SnapshotOptions {
   int view_factor = 2;  ///< pixels of a ceiling image per pixel of its line-of-sight view
   /// Share of the thinned GPC's points that get a descriptor (paper, section 5.2).
   double feature_sampling = 0.5;
+  Describer describer = {};  ///< empty: FPFH
 };
 
 /// The surfaces before one LiDAR, as long as they do not change: shared by all frames of that time. The cloud

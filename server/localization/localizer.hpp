@@ -43,6 +43,7 @@ struct LocalizerOptions {
   std::chrono::steady_clock::duration search_limit = GravitySearchOptions{}.time_limit;
   /// Whether there is time for work that nobody waits for, asked by a worker; empty: always.
   std::function<bool()> idle = {};
+  Describer describer = {};  ///< of points, for the searches by features; empty: FPFH
 
   [[nodiscard]] Verify verify_or_default() const;
   [[nodiscard]] Icp icp_or_default() const;

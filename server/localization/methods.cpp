@@ -59,6 +59,7 @@ GlobalCloudOptions global_cloud_options_for(const LocalizerOptions& options) {
   GlobalCloudOptions cloud;
   cloud.snapshot.voxel_size_m = options.voxel_size_m;
   cloud.snapshot.feature_sampling = options.sampling;
+  cloud.snapshot.describer = options.describer;
   cloud.drop_moving = options.method == Method::liloc;
   return cloud;
 }

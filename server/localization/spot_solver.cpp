@@ -97,17 +97,19 @@ Result<std::shared_ptr<const Spot>> Spot::create(const SpotRequest& request,
   for (const auto& p : spot->query_.sparse.points)
     spot->middle_sensor_ += p.cast<double>() / static_cast<double>(spot->query_.sparse.size());
   Spot* raw = spot.get();
-  spot->problem_.emplace(SpotProblem{
-      spot->snapshot_->target(), spot->query_, request.up_sensor, spot->snapshot_->room()->up_map(),
-      [raw]() -> const Described& { return raw->snapshot_->described(); },
-      [raw, options]() -> const Described& {
-        std::call_once(raw->described_once_, [&] {
-          raw->described_ =
-              describe(raw->query_.medium, {10 * options.voxel_size_m, options.sampling, options.seed});
-        });
-        return raw->described_;
-      },
-      options.seed * 7919 + request.seq, options.threads, judge_options_for(options.voxel_size_m)});
+  spot->problem_.emplace(
+      SpotProblem{spot->snapshot_->target(), spot->query_, request.up_sensor, spot->snapshot_->room()->up_map(),
+                  [raw]() -> const Described& { return raw->snapshot_->described(); },
+                  [raw, options]() -> const Described& {
+                    std::call_once(raw->described_once_, [&] {
+                      DescribeOptions describing{10 * options.voxel_size_m, options.sampling, options.seed};
+                      describing.describer = options.describer;
+                      describing.up = raw->request_.up_sensor;
+                      raw->described_ = describe(raw->query_.medium, describing, &raw->query_.cloud);
+                    });
+                    return raw->described_;
+                  },
+                  options.seed * 7919 + request.seq, options.threads, judge_options_for(options.voxel_size_m)});
   spot->problem_->search_limit = options.search_limit;
   spot->problem_->judging.refine.point_to_point = options.icp_or_default() == Icp::point;
   return spot;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/command/checks.hpp"
+#include "common/learned/describer.hpp"
 #include "common/registration/spot/align.hpp"
 #include "server/tools/cloud_file.hpp"
 #include "server/tools/command.hpp"
@@ -14,6 +15,7 @@ namespace {
 struct AlignArguments {
   std::string source, target;
   AlignOptions options;
+  std::string features = "fpfh", weights;
   bool json = false;
 };
 
@@ -42,7 +44,10 @@ Pose between_files(const Pose& T_target_source, const PlacedCloud& source, const
   return Eigen::Translation3d(target.origin) * T_target_source * Eigen::Translation3d(-source.origin);
 }
 
-int run(const AlignArguments& arguments) {
+int run(AlignArguments& arguments) {
+  auto describer = learned::describer_from(arguments.features, arguments.weights, arguments.options.threads);
+  if (!describer) return complain(describer.error(), kBadUsage);
+  arguments.options.describer = std::move(*describer);
   const auto source = read_placed_cloud(arguments.source);
   if (!source) return complain(source.error(), kBadUsage);
   const auto target = read_placed_cloud(arguments.target);
@@ -83,6 +88,13 @@ void add_align(CLI::App& app, int& exit_code) {
                    "Trust a result whose probability of being off by over 0.2 m is at most this")
       ->check(command::in_range(1e-6, 0.999))
       ->capture_default_str();
+  command
+      ->add_option("--features", arguments->features,
+                   "Of points: fpfh, or learned with --weights; confidence was fitted with fpfh")
+      ->check(command::one_of({"fpfh", "learned"}))
+      ->capture_default_str();
+  command->add_option("--weights", arguments->weights,
+                      "Network of --features learned, from common/learned/convert_fcgf.py");
   command->add_flag("--gravity", arguments->options.gravity,
                     "Both clouds have z up: search x, y, z and yaw alone");
   command->add_flag("--json", arguments->json, "Print JSON");

@@ -1,6 +1,7 @@
 #include "common/registration/features/feature_match.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 
 #include "common/registration/points/simd.hpp"
@@ -10,7 +11,6 @@ namespace {
 
 constexpr std::size_t kLanes = 8, kGroup = 2 * kLanes;  // descriptors of the block at once
 constexpr std::size_t kAtOnce = 4;                      // descriptors asked for at once
-constexpr std::size_t kDimensions = kFpfhSize;
 
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Ints = std::int32_t __attribute__((vector_size(kLanes * sizeof(float))));
@@ -22,15 +22,15 @@ struct Best {
 };
 
 LILOC_WIDE void best_of_groups(const float* groups, const float* half_squared, std::size_t count,
-                               const float* asked, Best (*best)[2]) {
-  const float *q0 = asked, *q1 = q0 + kDimensions, *q2 = q1 + kDimensions, *q3 = q2 + kDimensions;
+                               const float* asked, std::size_t dimensions, Best (*best)[2]) {
+  const float *q0 = asked, *q1 = q0 + dimensions, *q2 = q1 + dimensions, *q3 = q2 + dimensions;
   for (std::size_t g = 0; g < count; ++g) {
-    const float* block = groups + g * kGroup * kDimensions;
+    const float* block = groups + g * kGroup * dimensions;
     Floats left, right;
     std::memcpy(&left, half_squared + g * kGroup, sizeof left);
     std::memcpy(&right, half_squared + g * kGroup + kLanes, sizeof right);
     Floats a0 = -left, a1 = a0, a2 = a0, a3 = a0, b0 = -right, b1 = b0, b2 = b0, b3 = b0;
-    for (std::size_t d = 0; d < kDimensions; ++d) {  // eight sums stay in registers
+    for (std::size_t d = 0; d < dimensions; ++d) {  // eight sums stay in registers
       std::memcpy(&left, block + d * kGroup, sizeof left);
       std::memcpy(&right, block + d * kGroup + kLanes, sizeof right);
       a0 += q0[d] * left, b0 += q0[d] * right;
@@ -52,26 +52,29 @@ LILOC_WIDE void best_of_groups(const float* groups, const float* half_squared, s
 }  // namespace
 
 FeatureBlock::FeatureBlock(const Features& features, const std::vector<std::uint32_t>& columns)
-    : columns_(columns) {
+    : dimensions_(static_cast<std::size_t>(features.descriptors.rows())), columns_(columns) {
   const std::size_t groups = (columns.size() + kGroup - 1) / kGroup;
-  groups_.assign(groups * kGroup * kDimensions, 0);
+  groups_.assign(groups * kGroup * dimensions_, 0);
   half_squared_.assign(groups * kGroup, 1e30F);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const auto descriptor = features.descriptors.col(columns[i]);
-    float* group = groups_.data() + i / kGroup * kGroup * kDimensions + i % kGroup;
-    for (std::size_t d = 0; d < kDimensions; ++d) group[d * kGroup] = descriptor[static_cast<Eigen::Index>(d)];
+    float* group = groups_.data() + i / kGroup * kGroup * dimensions_ + i % kGroup;
+    for (std::size_t d = 0; d < dimensions_; ++d) group[d * kGroup] = descriptor[static_cast<Eigen::Index>(d)];
     half_squared_[i] = 0.5F * descriptor.squaredNorm();
   }
 }
 
 void FeatureBlock::improve(const Features& features, std::vector<Nearest>* nearest) const {
+  assert(static_cast<std::size_t>(features.descriptors.rows()) == dimensions_);
+  std::vector<float> asked(kAtOnce * dimensions_);
   for (std::size_t begin = 0; begin < features.size(); begin += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, features.size() - begin);
-    float asked[kAtOnce * kDimensions] = {};
-    std::memcpy(asked, features.descriptors.col(static_cast<Eigen::Index>(begin)).data(),
-                count * kDimensions * sizeof(float));
+    std::ranges::fill(asked, 0.0F);
+    std::memcpy(asked.data(), features.descriptors.col(static_cast<Eigen::Index>(begin)).data(),
+                count * dimensions_ * sizeof(float));
     Best found[kAtOnce][2];
-    best_of_groups(groups_.data(), half_squared_.data(), half_squared_.size() / kGroup, asked, found);
+    best_of_groups(groups_.data(), half_squared_.data(), half_squared_.size() / kGroup, asked.data(),
+                   dimensions_, found);
     for (std::size_t q = 0; q < count; ++q)
       for (std::size_t lane = 0; lane < kGroup; ++lane) {
         const Best& of_lane = found[q][lane / kLanes];

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/registration/features/fpfh.hpp"
+#include "common/registration/features/features.hpp"
 
 namespace liloc {
 
@@ -17,10 +17,12 @@ class FeatureBlock {
     std::uint32_t column = 0;  ///< of the features
     float closeness = -1e30F;  ///< half the square of the descriptor asked for less half its squared distance
   };
-  /// For each of the descriptors the nearest of the block, where that is nearer than what `nearest` holds.
+  /// For each of the descriptors the nearest of the block, where that is nearer than what `nearest` holds. They
+  /// have as many dimensions as the block's.
   void improve(const Features& features, std::vector<Nearest>* nearest) const;
 
  private:
+  std::size_t dimensions_;
   std::vector<std::uint32_t> columns_;
   std::vector<float> groups_;        ///< of 16 descriptors, one dimension after the other
   std::vector<float> half_squared_;  ///< of each; huge where a group is not full

@@ -3,19 +3,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/geometry/cloud.hpp"
+#include "common/registration/features/features.hpp"
 
 namespace liloc {
 
 // Rusu, Blodow, Beetz 2009: three histograms of eleven bins.
 inline constexpr int kFpfhSize = 33;
-
-/// Described points of a cloud: column i of `descriptors` belongs to point `index[i]`.
-struct Features {
-  std::vector<std::uint32_t> index;
-  Eigen::Matrix<float, kFpfhSize, Eigen::Dynamic> descriptors;
-  [[nodiscard]] std::size_t size() const { return index.size(); }
-};
 
 /// Describes the points `index` of a cloud with normals by their neighbours within `radius_m`. Only what these
 /// points need is computed: describing one point in eight costs about a quarter of describing all.

@@ -1,11 +1,10 @@
 #include "common/registration/search/feature_search.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numeric>
-#include <thread>
 
+#include "common/base/parallel.hpp"
 #include "common/registration/features/feature_match.hpp"
 
 namespace liloc {
@@ -30,27 +29,25 @@ std::vector<FeatureMatch> matches_in(const Described& query, const Described& ta
   return matches;
 }
 
-/// work(0), work(1), .. work(count - 1), by so many threads.
-template <class Work>
-void for_each_index(std::size_t count, int threads, const Work& work) {
-  std::atomic<std::size_t> next = 0;
-  const auto take = [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
-  };
-  std::vector<std::jthread> pool;
-  for (int t = 1; t < std::clamp(threads, 1, 64); ++t) pool.emplace_back(take);
-  take();
+/// By the describer, of clouds that stand upright where it is known how.
+Features described_upright(const DescribeOptions& options, const Cloud& dense, const Cloud& thinned,
+                           const std::vector<std::uint32_t>& index) {
+  if (!options.up) return options.describer(dense, thinned, index);
+  const Pose T_upright_cloud(Eigen::Quaterniond::FromTwoVectors(*options.up, Eigen::Vector3d::UnitZ()));
+  return options.describer(transformed(T_upright_cloud, dense), transformed(T_upright_cloud, thinned), index);
 }
 
 }  // namespace
 
-Described describe(const Cloud& thinned, const DescribeOptions& options) {
+Described describe(const Cloud& thinned, const DescribeOptions& options, const Cloud* dense) {
   Described result{thinned, {}};
   const double most =
       static_cast<double>(options.most) / static_cast<double>(std::max<std::size_t>(1, thinned.size()));
   const double share = std::min(options.sampling, most);
-  result.features =
-      fpfh(thinned, sample_indices(thinned.size(), share, options.seed), options.feature_radius_m);
+  const std::vector<std::uint32_t> index = sample_indices(thinned.size(), share, options.seed);
+  result.features = options.describer
+                        ? described_upright(options, dense != nullptr ? *dense : thinned, thinned, index)
+                        : fpfh(thinned, index, options.feature_radius_m);
   return result;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "common/registration/features/fpfh.hpp"
@@ -7,7 +8,8 @@
 
 namespace liloc {
 
-/// What a cloud needs for matching by features: its thinned points and their descriptors.
+/// What a cloud needs for matching by features: its thinned points and their descriptors. Clouds that are
+/// matched are described in the same way.
 struct Described {
   Cloud cloud;
   Features features;
@@ -19,8 +21,13 @@ struct DescribeOptions {
   double sampling = 0.5;          ///< share of the points that are described (paper, section 5.2)
   std::uint64_t seed = 1;
   std::size_t most = 100'000;  ///< about so many are described at most: matching costs their product
+  Describer describer = {};    ///< empty: FPFH
+  /// What is up in the cloud's frame, where it is known: a describer sees the cloud turned to have z up.
+  std::optional<Eigen::Vector3d> up = std::nullopt;
 };
-[[nodiscard]] Described describe(const Cloud& thinned, const DescribeOptions& options);
+/// `dense`: the cloud that was thinned, for a describer that sees more in it; null: there is none.
+[[nodiscard]] Described describe(const Cloud& thinned, const DescribeOptions& options,
+                                 const Cloud* dense = nullptr);
 
 /// Defaults are by hand where nothing else is said.
 struct FeatureSearchOptions {

@@ -129,8 +129,9 @@ Result<std::vector<AlignHypothesis>> align_hypotheses(const Cloud& source, const
   Cloud thin = with_normals(voxel_downsample(target, voxel), Eigen::Vector3f::Zero(), {2.5 * voxel, 5});
   if (const Status enough = has_enough("target", thin, voxel); !enough) return tl::unexpected(enough.error());
   const Target room = make_target(std::move(thin), {}, voxel);
-  const DescribeOptions describing{10 * voxel, 1.0, options.seed, kMostDescribed};
-  const auto matches = match_features(describe(query.medium, describing), describe(room->coarse, describing));
+  const DescribeOptions describing{10 * voxel, 1.0, options.seed, kMostDescribed, options.describer};
+  const auto matches = match_features(describe(query.medium, describing, &query.cloud),
+                                      describe(room->coarse, describing, &room->cloud));
   SpotProblem problem{room, query};
   problem.seed = options.seed;
   problem.threads = options.threads;

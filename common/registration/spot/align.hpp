@@ -12,6 +12,7 @@ struct AlignOptions {
   bool gravity = false;  ///< both clouds have z up: only x, y, z and yaw are searched
   std::uint64_t seed = 1;
   int threads = 1;
+  Describer describer = {};  ///< of points; empty: FPFH, for which `confidence` was fitted
 };
 
 struct AlignResult {

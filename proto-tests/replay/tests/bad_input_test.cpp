@@ -163,9 +163,16 @@ TEST_F(BadInput, InertialWithoutImu) {
   options_.local = "inertial";
   expect_refused({"inertial", "imu.csv"});
 }
-TEST_F(BadInput, LearnedFeaturesAreRefused) {
+TEST_F(BadInput, LearnedFeaturesNeedWeights) {
   options_.features = "learned";
-  expect_refused({"--features", "fpfh"});
+  expect_refused({"--features", "--weights", "convert_fcgf.py"});
+  options_.weights = root_ / "none.safetensors";
+  expect_refused({"--weights", "none.safetensors", "convert_fcgf.py"});
+  options_.features = "fpfh";
+  expect_refused({"--weights", "--features learned"});
+  options_.weights.clear();
+  options_.features = "magic";
+  expect_refused({"--features", "magic"});
 }
 TEST_F(BadInput, WrongAnswersNeedTheTruth) {
   options_.save_answers = "kept:wrong";

@@ -85,6 +85,9 @@ TEST(ServerOptions, WhatIsWrongIsNamedWithExitCodeTwo) {
       {{"--threads", "0"}, "--threads"},
       {{"--max-clients", "5000"}, "--max-clients"},
       {{"--verify", "tracks", "--method", "paper"}, "--verify"},
+      {{"--features", "learned"}, "convert_fcgf.py"},
+      {{"--features", "learned", "--weights", "/none"}, "--weights: /none"},
+      {{"--weights", "/none"}, "--features learned"},
       {{"--web-token", "file"}, "--web-token goes with --web"},
       {{"--save-answers", "out:wrong"}, "--save-answers"},
       {{"--interface", "a b"}, "--interface"}};

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <random>
+
 #include "common/registration/features/fpfh.hpp"
 #include "common/testing/watched_room.hpp"
 
@@ -23,6 +26,29 @@ TEST_P(FeatureMatchLaw, BlocksFindTheNearestDescriptor) {
     const auto asked = device.descriptors.col(static_cast<Eigen::Index>(i));
     const float least = (room.descriptors.colwise() - asked).colwise().norm().minCoeff();
     EXPECT_LE((room.descriptors.col(nearest[i].column) - asked).norm(), least * 1.001F + 0.1F);
+  }
+}
+
+/// A network's have 16 or 32 dimensions; what is no multiple of a register comes out right, too.
+TEST_P(FeatureMatchLaw, AnyNumberOfDimensionsWillDo) {
+  std::mt19937_64 rng(GetParam());
+  std::normal_distribution<float> normal;
+  for (const Eigen::Index dimensions : {1, 16, 32, 37}) {
+    Features room, device;
+    for (auto& [features, count] : {std::pair{&room, 50U}, std::pair{&device, 7U}}) {
+      features->index.resize(count);
+      features->descriptors = Eigen::MatrixXf::NullaryExpr(dimensions, count, [&] { return normal(rng); });
+    }
+    std::vector<std::uint32_t> all(room.size());
+    std::iota(all.begin(), all.end(), 0U);
+    std::vector<FeatureBlock::Nearest> nearest(device.size());
+    FeatureBlock(room, all).improve(device, &nearest);
+    for (std::size_t i = 0; i < device.size(); ++i) {
+      Eigen::Index expected = 0;
+      const auto asked = device.descriptors.col(static_cast<Eigen::Index>(i));
+      (room.descriptors.colwise() - asked).colwise().norm().minCoeff(&expected);
+      EXPECT_EQ(nearest[i].column, static_cast<std::uint32_t>(expected)) << dimensions << " dimensions";
+    }
   }
 }
 

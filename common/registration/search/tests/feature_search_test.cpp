@@ -73,5 +73,29 @@ TEST(Describe, ACloudOfAnySizeGivesABoundedNumberOfDescriptors) {
   EXPECT_NEAR(static_cast<double>(described(500)), 500, 100);
 }
 
+TEST(Describe, ADescriberTakesThePlaceOfFpfh) {
+  const WatchedRoom w = watched_room(1);
+  const Cloud &dense = w.target->cloud, &thinned = w.target->coarse;
+  DescribeOptions options{0.5, 0.3, 1};
+  const Cloud* seen = nullptr;
+  options.describer = [&](const Cloud& of, const Cloud& points, const std::vector<std::uint32_t>& index) {
+    seen = &of;
+    EXPECT_EQ(points.size(), thinned.size());
+    return Features{{index.front()}, Eigen::MatrixXf::Constant(4, 1, 7)};
+  };
+  const Described described = describe(thinned, options, &dense);
+  EXPECT_EQ(seen, &dense);
+  EXPECT_EQ(described.features.index,
+            std::vector<std::uint32_t>{sample_indices(thinned.size(), 0.3, 1).front()});
+  EXPECT_EQ(described.features.descriptors, Eigen::MatrixXf::Constant(4, 1, 7));
+  options.up = -Eigen::Vector3d::UnitX();
+  options.describer = [&](const Cloud& of, const Cloud& points, const std::vector<std::uint32_t>& index) {
+    EXPECT_NEAR(points.points[index.front()].z(), -thinned.points[index.front()].x(), 1e-4F);
+    EXPECT_NEAR(of.points.front().z(), -dense.points.front().x(), 1e-4F);
+    return Features{{}, {}};
+  };
+  (void)describe(thinned, options, &dense);
+}
+
 }  // namespace
 }  // namespace liloc

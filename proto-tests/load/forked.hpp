@@ -23,6 +23,7 @@ class Forked {
 
   /// Waits until it has ended; once. Errors: its own, or it was killed.
   [[nodiscard]] Result<std::string> collect();
+  [[nodiscard]] pid_t pid() const { return pid_; }
   /// CPU time, once collected.
   [[nodiscard]] double cpu_s() const { return cpu_s_; }
 

@@ -1,5 +1,7 @@
 #include "server/service/request_scheduler.hpp"
 
+#include <pthread.h>
+
 #include <exception>
 #include <utility>
 
@@ -127,6 +129,7 @@ void RequestScheduler::tell(Stage stage, std::chrono::steady_clock::time_point s
 }
 
 void RequestScheduler::work() {
+  pthread_setname_np(pthread_self(), "worker");  // as `top -H` shows it
   std::unique_lock lock(mutex_);
   for (;;) {
     std::optional<Waiting> begun;

@@ -14,7 +14,8 @@
 namespace liloc::client {
 namespace {
 
-constexpr std::size_t kMostPoints = 4'000'000;  // as in common/wire/convert_points.cpp
+constexpr auto kOverdueEvery = std::chrono::milliseconds(20);  // of 100 ms at least that a server may be late
+constexpr std::size_t kMostPoints = 4'000'000;                 // as in common/wire/convert_points.cpp
 
 Outcome<Taken> to_public(const Status& status) {
   return status ? Outcome<Taken>(Taken{}) : Outcome<Taken>::failed(status.error().message);
@@ -77,6 +78,7 @@ Status Client::Impl::connect(const Options& options) {
     if (session->add_reply(reply) && on_reply) on_reply(to_public(reply));
   };
   callbacks.on_server = [this](bool matched) { connected = matched; };
+  callbacks.on_server_found = [this] { session->server_found(); };
   callbacks.on_namesake = [this] { session->namesake_heard(); };
   callbacks.on_bad_reply = [this](const std::string& why) { session->reply_dropped(why); };
   auto linked = wire::ClientLink::create(*dispatcher, id, std::move(callbacks));
@@ -88,6 +90,9 @@ Status Client::Impl::connect(const Options& options) {
       std::chrono::steady_clock::now());
   end_of_credentials.emplace(options.credentials, std::chrono::steady_clock::now());
   dispatcher->every(std::chrono::seconds(1), [this] { look(); });
+  dispatcher->every(kOverdueEvery, [this] {
+    if (const auto reply = session->add_overdue_reply(); reply && on_reply) on_reply(to_public(*reply));
+  });
   // What cannot be read of a status says nothing of the codes; replies tell of another version.
   return wire::subscribe_status(*dispatcher, [this](const Result<wire::ServerStatus>& status) {
     if (status) session->add_server(status->server_id, status->codecs);

@@ -284,6 +284,10 @@ void Engine::add_reply(const SpotReply& reply) {
   if (impl_->link.located(impl_->segment)) impl_->schedule.search_ended();
 }
 
+void Engine::ask_soon() {
+  impl_->schedule.ask_soon();
+}
+
 std::string Engine::problem() const {
   if (!impl_->started) return "";
   if (std::string problem = impl_->clock_problem(); !problem.empty()) return problem;

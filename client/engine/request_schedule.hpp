@@ -33,6 +33,8 @@ class RequestSchedule {
   /// A request left / was answered, as of the newest frame's stamp.
   void sent(std::uint64_t seq, StampNs stamp_ns);
   void answered(const SpotReply& reply, StampNs now_ns);
+  /// What was asked before may have gone nowhere: the next frame that can asks, but for the lower bound.
+  void ask_soon() { after_gap_ = true; }
   /// An answer was verified: there is no haste any more.
   void search_ended() { located_ = true; }
   /// The odometry broke: what was verified holds no longer.

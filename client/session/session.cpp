@@ -62,6 +62,9 @@ struct Session::Impl {
   void send(SpotRequest request);
   [[nodiscard]] CloudCodec choose_codec();
   [[nodiscard]] bool follows(const SpotReply& reply);
+  [[nodiscard]] std::optional<SpotReply> take_overdue();
+  void tell_change(const std::string& before, const std::string& followed) const;
+  void use(const SpotReply& reply);
   [[nodiscard]] std::string namesake_problem() const {
     return fmt::format("another device asks as {}: give each an id of its own", id());
   }
@@ -218,11 +221,36 @@ bool Session::Impl::follows(const SpotReply& reply) {
     return false;
   }
   const std::string before = servers.followed();
-  if (!servers.takes(reply)) return false;
+  if (!servers.takes(reply, now())) return false;
   lock.unlock();
-  if (!before.empty() && reply.server_id != before)
-    log::warning("{}: {} answers in place of {}", id(), reply.server_id, before);
+  tell_change(before, reply.server_id);
   return true;
+}
+
+void Session::Impl::tell_change(const std::string& before, const std::string& followed) const {
+  if (!before.empty() && followed != before)
+    log::warning("{}: {} answers in place of {}", id(), followed, before);
+}
+
+std::optional<SpotReply> Session::Impl::take_overdue() {
+  std::unique_lock lock(servers_mutex);
+  const std::string before = servers.followed();
+  auto reply = servers.take_overdue(now());
+  lock.unlock();
+  if (reply) tell_change(before, reply->server_id);
+  return reply;
+}
+
+void Session::Impl::use(const SpotReply& reply) {
+  if (clock.learn(reply, now())) {
+    report.count(&SessionStats::clock_jumps);
+    log::warning("{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
+                 id());
+  }
+  const std::scoped_lock lock(engine_mutex);
+  engine.add_reply(reply);
+  if (trace) trace->on_reply(reply);
+  report.reply(reply);
 }
 
 Status Session::Impl::push(SensorFrame frame) {
@@ -302,16 +330,19 @@ void Session::add_server(const std::string& server_id, const std::vector<CloudCo
 
 bool Session::add_reply(const SpotReply& reply) {
   if (!impl_->follows(reply)) return false;
-  if (impl_->clock.learn(reply, now())) {
-    impl_->report.count(&SessionStats::clock_jumps);
-    log::warning("{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
-                 impl_->id());
-  }
-  const std::scoped_lock lock(impl_->engine_mutex);
-  impl_->engine.add_reply(reply);
-  if (impl_->trace) impl_->trace->on_reply(reply);
-  impl_->report.reply(reply);
+  impl_->use(reply);
   return true;
+}
+
+std::optional<SpotReply> Session::add_overdue_reply() {
+  auto reply = impl_->take_overdue();
+  if (reply) impl_->use(*reply);
+  return reply;
+}
+
+void Session::server_found() {
+  const std::scoped_lock lock(impl_->engine_mutex);
+  impl_->engine.ask_soon();
 }
 
 void Session::reply_dropped(const std::string& why) {

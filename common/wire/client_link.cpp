@@ -1,5 +1,6 @@
 #include "common/wire/client_link.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <random>
 
@@ -14,13 +15,18 @@ namespace liloc::wire {
 struct ClientLink::Impl {
   void take_reply(const liloc_msg_SpotReply& message);
   void report_match();
-  [[nodiscard]] bool matched() const;
+  /// Servers that are matched in both directions: now, and since the start.
+  struct Matches {
+    std::uint32_t current = 0, total = 0;
+  };
+  [[nodiscard]] Matches matches() const;
 
   std::string client_id;
   std::uint64_t session = 0;
   ClientCallbacks callbacks;
   std::atomic<bool> closed = false;
-  bool reported = false;  // of the dispatcher's thread, as is the next
+  bool reported = false;    // of the dispatcher's thread, as are the next two
+  std::uint32_t found = 0;  // servers so far, counted by both directions
   Namesake namesake;
   Entity publisher, subscriber, writer;
   std::int32_t reader = 0;  // the dispatcher owns it
@@ -35,18 +41,24 @@ std::uint64_t random_session() {
 
 }  // namespace
 
-bool ClientLink::Impl::matched() const {
+ClientLink::Impl::Matches ClientLink::Impl::matches() const {
   dds_publication_matched_status_t readers{};
   dds_subscription_matched_status_t writers{};
-  return dds_get_publication_matched_status(writer.handle(), &readers) == DDS_RETCODE_OK &&
-         dds_get_subscription_matched_status(reader, &writers) == DDS_RETCODE_OK && readers.current_count > 0 &&
-         writers.current_count > 0;
+  if (dds_get_publication_matched_status(writer.handle(), &readers) != DDS_RETCODE_OK ||
+      dds_get_subscription_matched_status(reader, &writers) != DDS_RETCODE_OK)
+    return {};
+  return {std::min(readers.current_count, writers.current_count),
+          std::min(readers.total_count, writers.total_count)};
 }
 
 void ClientLink::Impl::report_match() {
-  const bool now = matched();  // reading the status also resets it
-  if (now == std::exchange(reported, now) || closed) return;
-  if (callbacks.on_server) callbacks.on_server(now);
+  const Matches now = matches();  // reading the status also resets it
+  const bool there = now.current > 0;
+  const bool changed = there != std::exchange(reported, there);
+  const bool more = now.total > std::exchange(found, now.total);
+  if (closed) return;
+  if (changed && callbacks.on_server) callbacks.on_server(there);
+  if (more && callbacks.on_server_found) callbacks.on_server_found();
 }
 
 void ClientLink::Impl::take_reply(const liloc_msg_SpotReply& message) {
@@ -115,7 +127,7 @@ Result<std::unique_ptr<ClientLink>> ClientLink::create(Dispatcher& dispatcher, c
 }
 
 bool ClientLink::server_matched() const {
-  return impl_->matched();
+  return impl_->matches().current > 0;
 }
 
 Status ClientLink::send(const SpotRequest& request) {

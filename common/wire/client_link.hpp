@@ -17,6 +17,7 @@ namespace liloc::wire {
 struct ClientCallbacks {
   std::function<void(SpotReply)> on_reply = {};        ///< to a request of this run of the client
   std::function<void(bool matched)> on_server = {};    ///< the server came or went
+  std::function<void()> on_server_found = {};          ///< one more: the first, another, or one that began anew
   std::function<void(std::string)> on_bad_reply = {};  ///< a reply that was dropped, and why
   std::function<void()> on_namesake = {};  ///< another device asks under this id; at each answer to it
 };

@@ -1,6 +1,8 @@
 #include "proto-tests/faults/players.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <map>
 #include <thread>
 
 #include "client/include/liloc/client.hpp"

@@ -159,11 +159,15 @@ Status Stage::check() {
 Status Stage::begin(const Performance& performance) {
   const auto start = [&](const char* host, const std::function<Result<std::string>()>& part,
                          std::optional<load::Forked>& process) -> Status {
-    Result<load::Forked> forked = fail("not started");
-    network_->host(host).within([&] { forked = load::Forked::start(part); });
-    if (!forked) return tl::unexpected(forked.error());
-    process.emplace(std::move(*forked));
-    return {};
+    Status started;
+    network_->host(host).within([&] {
+      auto forked = load::Forked::start(part);
+      if (forked)
+        process.emplace(std::move(*forked));
+      else
+        started = tl::unexpected(forked.error());
+    });
+    return started;
   };
   const Status ceiling = start(
       kCeiling, [&] { return play_ceiling(performance, seat(wire::Role::source)); }, ceiling_);

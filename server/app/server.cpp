@@ -123,7 +123,11 @@ Status Server::open(const ServerOptions& options) {
     if (auto sent = status_publisher_->publish(status()); !sent) log::warning("{}", sent.error().message);
   });
   if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0)  // three words within the limit
-    dispatcher_->every(std::chrono::milliseconds(limit_us / 3000 + 1), [] { sd_notify(0, "WATCHDOG=1"); });
+    dispatcher_->every(std::chrono::milliseconds(limit_us / 3000 + 1), [this] {
+      const web::Page live = web::live_page(facts());
+      if (live.status == 200) return (void)sd_notify(0, "WATCHDOG=1");
+      log::error("no word to the watchdog, so that this server is started anew: {}", live.body);
+    });
   if (options.status_every_s > 0)
     dispatcher_->every(std::chrono::milliseconds(static_cast<int>(options.status_every_s * 1e3) + 1),
                        [this] { log_status(); });

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -23,8 +24,9 @@ RequestScheduler::RequestScheduler(ServiceOptions options, ServiceBackend backen
       backend_(std::move(backend)),
       answer_(std::move(answer)),
       sessions_(options_.max_rate_hz),
-      queue_(options_.queue) {
-  for (int i = 0; i < options_.workers; ++i) workers_.emplace_back([this] { work(); });
+      queue_(options_.queue),
+      begun_(static_cast<std::size_t>(options_.workers)) {
+  for (std::size_t i = 0; i < begun_.size(); ++i) workers_.emplace_back([this, i] { work(i); });
 }
 
 RequestScheduler::~RequestScheduler() {
@@ -128,7 +130,7 @@ void RequestScheduler::tell(Stage stage, std::chrono::steady_clock::time_point s
     backend_.on_stage(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
 }
 
-void RequestScheduler::work() {
+void RequestScheduler::work(std::size_t worker) {
   pthread_setname_np(pthread_self(), "worker");  // as `top -H` shows it
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -138,10 +140,12 @@ void RequestScheduler::work() {
       return begun || (stopping_ && queue_.empty());
     });
     if (!begun) return;
-    lock.unlock();
     const auto start = std::chrono::steady_clock::now();
+    begun_[worker] = start;
+    lock.unlock();
     work_on(begun->arrival);
     lock.lock();
+    begun_[worker].reset();
     queue_.end(*begun, std::chrono::steady_clock::now() - start);
     may_begin_.notify_all();
   }
@@ -231,6 +235,14 @@ void RequestScheduler::stop() {
     if (worker.joinable()) worker.join();
 }
 
+double RequestScheduler::longest_work_s() const {
+  const auto now = std::chrono::steady_clock::now();
+  double longest_s = 0;
+  for (const auto& begun : begun_)
+    if (begun) longest_s = std::max(longest_s, std::chrono::duration<double>(now - *begun).count());
+  return longest_s;
+}
+
 ServiceCounters RequestScheduler::counters() const {
   const std::scoped_lock lock(mutex_);
   return {answered_,
@@ -239,7 +251,8 @@ ServiceCounters RequestScheduler::counters() const {
           static_cast<std::uint32_t>(held_.size() + queue_.size()),
           sessions_.clients(SpotStatus::verified),
           sessions_.clients(SpotStatus::provisional),
-          sessions_.clients(SpotStatus::refused)};
+          sessions_.clients(SpotStatus::refused),
+          longest_work_s()};
 }
 
 }  // namespace liloc

@@ -90,6 +90,21 @@ TEST(RequestScheduler, TellsEachAnswerHowLongItTookWhereAndHowClientsStand) {
   EXPECT_EQ(scheduler.counters().clients_provisional, 0U);
 }
 
+TEST(RequestScheduler, TellsHowLongAWorkerHasBeenOverOneRequest) {
+  Gate gate;
+  Answers answers;
+  RequestScheduler scheduler({.workers = 2}, {.locate = [&](const SpotRequest& r) { return gate.pass(r); }},
+                             answers.sink());
+  EXPECT_EQ(scheduler.counters().longest_work_s, 0);
+  scheduler.submit(arrival("a", 1));
+  gate.wait_inside();
+  std::this_thread::sleep_for(30ms);
+  EXPECT_GE(scheduler.counters().longest_work_s, 0.03);
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(1));
+  while (scheduler.counters().longest_work_s > 0) std::this_thread::sleep_for(1ms);
+}
+
 TEST(RequestScheduler, AProblemSeenOnTheWayIsPassedOn) {
   Answers answers;
   RequestScheduler scheduler({}, {.locate = verified}, answers.sink());

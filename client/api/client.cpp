@@ -14,6 +14,8 @@
 namespace liloc::client {
 namespace {
 
+// While nobody answers: as long as a server that is back may not know of its clients, at most; by hand.
+constexpr auto kAnnounceEvery = std::chrono::milliseconds(250);
 constexpr auto kOverdueEvery = std::chrono::milliseconds(20);  // of 100 ms at least that a server may be late
 constexpr std::size_t kMostPoints = 4'000'000;                 // as in common/wire/convert_points.cpp
 
@@ -92,6 +94,9 @@ Status Client::Impl::connect(const Options& options) {
   dispatcher->every(std::chrono::seconds(1), [this] { look(); });
   dispatcher->every(kOverdueEvery, [this] {
     if (const auto reply = session->add_overdue_reply(); reply && on_reply) on_reply(to_public(*reply));
+  });
+  dispatcher->every(kAnnounceEvery, [this] {
+    if (session->unanswered()) link->announce();
   });
   // What cannot be read of a status says nothing of the codes; replies tell of another version.
   return wire::subscribe_status(*dispatcher, [this](const Result<wire::ServerStatus>& status) {

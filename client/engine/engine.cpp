@@ -284,8 +284,8 @@ void Engine::add_reply(const SpotReply& reply) {
   if (impl_->link.located(impl_->segment)) impl_->schedule.search_ended();
 }
 
-void Engine::ask_soon() {
-  impl_->schedule.ask_soon();
+void Engine::server_found() {
+  impl_->schedule.server_found();
 }
 
 std::string Engine::problem() const {

@@ -19,6 +19,8 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits; by hand
+// Above what an answer takes where the ceiling is waited for (100 ms) and a room is searched; by hand.
+constexpr auto kUnanswered = std::chrono::milliseconds(250);
 constexpr auto kNamesakeTold = std::chrono::seconds(10);  // a few requests of the other device; by hand
 // Of a frame for the odometry of its stamp; by hand.
 constexpr auto kOdometryWait = std::chrono::milliseconds(60);
@@ -82,6 +84,7 @@ struct Session::Impl {
   CodecChoice codecs;
   CloudCodec codec;  ///< of the newest requests
   OpenRequests open;
+  std::optional<SessionClock::Time> unanswered_since;  ///< the first request since the last reply left
   std::optional<SessionClock::Time> namesake_at;
 
   std::mutex engine_mutex;  ///< held for one frame or one reply
@@ -190,6 +193,7 @@ void Session::Impl::send(SpotRequest request) {
   {
     const std::scoped_lock lock(servers_mutex);
     open.sent(request);  // before it leaves: an answer may be quicker than the return
+    if (!unanswered_since) unanswered_since = now();
   }
   const Status sent = callbacks.send ? callbacks.send(request) : Status(fail("no transport"));
   if (sent) return;
@@ -220,6 +224,7 @@ bool Session::Impl::follows(const SpotReply& reply) {
                     reply.server_id, reply.seq));
     return false;
   }
+  unanswered_since.reset();
   const std::string before = servers.followed();
   if (!servers.takes(reply, now())) return false;
   lock.unlock();
@@ -340,9 +345,14 @@ std::optional<SpotReply> Session::add_overdue_reply() {
   return reply;
 }
 
+bool Session::unanswered() const {
+  const std::scoped_lock lock(impl_->servers_mutex);
+  return impl_->unanswered_since && now() - *impl_->unanswered_since > kUnanswered;
+}
+
 void Session::server_found() {
   const std::scoped_lock lock(impl_->engine_mutex);
-  impl_->engine.ask_soon();
+  impl_->engine.server_found();
 }
 
 void Session::reply_dropped(const std::string& why) {

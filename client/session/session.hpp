@@ -56,6 +56,8 @@ class Session {
   /// To be called often, as each 20 ms: another server's reply that counts by now, because the followed one is
   /// late with the same request. It was added; waits as `add_reply` does.
   std::optional<SpotReply> add_overdue_reply();
+  /// Requests have been unanswered for a while, whichever server is asked: each may be gone, and started anew.
+  [[nodiscard]] bool unanswered() const;
   /// A server was found: what was asked before may have gone nowhere, so the next frame asks.
   void server_found();
   /// One that could not be understood: counted, and told once in five seconds.

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "common/base/ids.hpp"
+#include "common/base/log.hpp"
 #include "common/wire/convert_spot.hpp"
 #include "common/wire/namesake.hpp"
 #include "common/wire/topics.hpp"
@@ -29,7 +30,8 @@ struct ClientLink::Impl {
   std::uint32_t found = 0;  // servers so far, counted by both directions
   Namesake namesake;
   Entity publisher, subscriber, writer;
-  std::int32_t reader = 0;  // the dispatcher owns it
+  std::int32_t reader = 0, participant = 0;  // the dispatcher owns the reader
+  std::atomic<std::uint32_t> announced = 0;
 };
 
 namespace {
@@ -88,6 +90,7 @@ Result<std::unique_ptr<ClientLink>> ClientLink::create(Dispatcher& dispatcher, c
   if (!id) return tl::unexpected(id.error());
   auto impl = std::make_shared<Impl>();
   impl->client_id = *id;
+  impl->participant = dispatcher.participant().handle();
   impl->session = random_session();
   impl->callbacks = std::move(callbacks);
   const auto participant = dispatcher.participant().handle();
@@ -128,6 +131,15 @@ Result<std::unique_ptr<ClientLink>> ClientLink::create(Dispatcher& dispatcher, c
 
 bool ClientLink::server_matched() const {
   return impl_->matches().current > 0;
+}
+
+void ClientLink::announce() {
+  // What of a participant's QoS may change is its user data, and a change is told to all peers at once.
+  const std::uint32_t count = ++impl_->announced;
+  const Qos qos = make_qos();
+  dds_qset_userdata(qos.get(), &count, sizeof count);
+  if (const Status told = check(dds_set_qos(impl_->participant, qos.get()), "announcement"); !told)
+    log::debug("{}", told.error().message);
 }
 
 Status ClientLink::send(const SpotRequest& request) {

@@ -36,6 +36,9 @@ class ClientLink {
   /// request goes nowhere, and that is an error; so is a request that cannot travel (over 256 poses, 256 KiB of
   /// cloud). Any thread.
   [[nodiscard]] Status send(const SpotRequest& request);
+  /// Tells the servers' hosts that this client is here, ahead of the time when it would tell them anyway: a
+  /// server that was started anew finds its clients by that. Any thread.
+  void announce();
   /// Both directions are matched, so that nothing sent now is lost for want of discovery. Any thread.
   [[nodiscard]] bool server_matched() const;
 

@@ -1,7 +1,6 @@
 #pragma once
 // A switch between hosts of our own that loses, delays and reorders what passes, as its owner wishes.
-#include <atomic>
-#include <map>
+#include <chrono>
 #include <queue>
 #include <random>
 #include <vector>
@@ -36,7 +35,8 @@ class BadNetwork {
   struct Counters {
     std::uint64_t carried = 0, lost = 0;  ///< frames of Ethernet
   };
-  [[nodiscard]] Counters counters() const { return {carried_, lost_}; }
+  /// Of what a host sent and was sent.
+  [[nodiscard]] Counters counters(const std::string& name);
 
  private:
   struct Late {
@@ -51,17 +51,18 @@ class BadNetwork {
   void read_from(std::size_t host);
   void pass(std::size_t from, std::size_t to, const std::uint8_t* frame, std::size_t size);
   void deliver(std::size_t to, const std::uint8_t* frame, std::size_t size);
+  void count(std::size_t from, std::size_t to, bool lost);
   void deliver_due();
   [[nodiscard]] int wait_ms() const;
   [[nodiscard]] std::size_t index_of(const std::string& name) const;
 
   std::vector<std::unique_ptr<NetworkHost>> hosts_;
   std::mutex mutex_;
-  std::vector<Weather> weather_;  ///< by host; guarded by the mutex
-  std::mt19937_64 random_;        ///< of the thread alone, as is the next
+  std::vector<Weather> weather_;  ///< by host, as is the next; guarded by the mutex
+  std::vector<Counters> counters_;
+  std::mt19937_64 random_;  ///< of the thread alone, as is the next
   std::priority_queue<Late, std::vector<Late>, std::greater<>> late_;
   std::uint64_t order_ = 0;
-  std::atomic<std::uint64_t> carried_ = 0, lost_ = 0;
   std::jthread thread_;  // last: it ends before what it uses
 };
 

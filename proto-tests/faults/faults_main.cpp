@@ -53,20 +53,26 @@ int run_all(const Arguments& arguments, const std::vector<Scenario>& chosen) {
   const auto recording = recording_of(arguments);
   if (!recording) return complain(recording.error(), kFailed);
   std::vector<Verdict> verdicts;
+  bool all_performed = true;
   for (const Scenario& scenario : chosen)
     for (int i = 0; i < arguments.repeat; ++i) {
       const auto seed = arguments.seed + static_cast<std::uint64_t>(i);
       const auto performed =
           perform(scenario, *recording,
                   {replay::program_folder(), arguments.out / fmt::format("{}-{}", scenario.name, i + 1), seed});
-      if (!performed) return complain(performed.error(), kFailed);
+      if (replay::stop_requested()) return complain({"stopped by a signal"}, kFailed);
+      if (!performed) {
+        complain({fmt::format("{}: {}", scenario.name, performed.error().message)}, kFailed);
+        all_performed = false;
+        continue;
+      }
       verdicts.push_back(judge(scenario, *performed));
       fmt::print(stderr, "{}", to_table({verdicts.back()}).substr(to_table({}).size()));
       if (const Status written = write_file(arguments.out / "faults.json", to_json(verdicts)); !written)
         return complain(written.error(), kFailed);
     }
   fmt::print("{}", to_table(verdicts));
-  return std::ranges::all_of(verdicts, &Verdict::good) ? kDone : kFailed;
+  return all_performed && std::ranges::all_of(verdicts, &Verdict::good) ? kDone : kFailed;
 }
 
 int run(const Arguments& arguments) {

@@ -55,7 +55,7 @@ Result<Performed> perform(const Scenario& scenario, const Recording& recording, 
   auto story = (*stage)->end();
   if (!story) return tl::unexpected(story.error());
   performed.story = std::move(*story);
-  performed.frames = (*stage)->network().counters();
+  performed.frames = (*stage)->network().counters(kDevice);
   return performed;
 }
 

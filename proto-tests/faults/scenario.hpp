@@ -37,7 +37,7 @@ struct Times {
 struct Performed {
   DeviceStory story;
   Times times;
-  BadNetwork::Counters frames;
+  BadNetwork::Counters frames;  ///< of the device's link
 };
 
 struct PerformOptions {

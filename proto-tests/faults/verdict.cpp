@@ -10,8 +10,10 @@ namespace {
 
 void judge_replies(const Scenario& scenario, const Performed& performed, Verdict& verdict) {
   double last_s = 0, gap_s = 0;
+  std::vector<double> answers_s;
   for (const ReplyRow& reply : performed.story.replies) {
     ++verdict.replies;
+    answers_s.push_back(reply.at_s - reply.frame_s);
     verdict.wrong += reply.wrong;
     if (!reply.verified) continue;
     ++verdict.verified;
@@ -21,6 +23,8 @@ void judge_replies(const Scenario& scenario, const Performed& performed, Verdict
     const auto& over_s = performed.times.over_s;
     if (over_s && reply.frame_s >= *over_s && !verdict.recovery_s) verdict.recovery_s = reply.at_s - *over_s;
   }
+  verdict.answer_s = replay::percentile(answers_s, 0.5);
+  verdict.late_answer_s = replay::percentile(answers_s, 0.95);
   if (verdict.first_s) verdict.gap_s = std::max(gap_s, scenario.seconds - last_s);
 }
 
@@ -49,7 +53,7 @@ std::string summary(const std::vector<Verdict>& runs, std::optional<double> Verd
   return fmt::format("{:.2f} s ({:.2f})", median, *std::ranges::max_element(values));
 }
 
-std::string row(const std::vector<Verdict>& runs) {
+Verdict sum_of(const std::vector<Verdict>& runs) {
   Verdict sum;
   for (const Verdict& run : runs) {
     sum.requests += run.requests;
@@ -63,17 +67,34 @@ std::string row(const std::vector<Verdict>& runs) {
     sum.worst_deg = std::max(sum.worst_deg, run.worst_deg);
     sum.frames_lost += run.frames_lost / static_cast<double>(runs.size());
   }
+  return sum;
+}
+
+std::string row(const std::vector<Verdict>& runs) {
+  const Verdict sum = sum_of(runs);
   const auto share = [&](std::size_t part) {
     return sum.frames > 0
                ? fmt::format("{:.0f} %", 100.0 * static_cast<double>(part) / static_cast<double>(sum.frames))
                : "-";
   };
-  return fmt::format(
-      "| {} | {} | {:.1f} % | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.0f} cm, {:.1f} deg |\n",
-      runs.front().scenario, runs.size(), 100 * sum.frames_lost, sum.requests, sum.unanswered, sum.verified,
-      sum.wrong, summary(runs, &Verdict::first_s, true), summary(runs, &Verdict::gap_s, true),
-      summary(runs, &Verdict::recovery_s, runs.front().recovers), share(sum.located), share(sum.lost),
-      100 * sum.worst_m, sum.worst_deg);
+  const std::string cells[] = {runs.front().scenario,
+                               std::to_string(runs.size()),
+                               fmt::format("{:.1f} %", 100 * sum.frames_lost),
+                               std::to_string(sum.requests),
+                               std::to_string(sum.unanswered),
+                               std::to_string(sum.verified),
+                               std::to_string(sum.wrong),
+                               summary(runs, &Verdict::answer_s, true),
+                               summary(runs, &Verdict::late_answer_s, true),
+                               summary(runs, &Verdict::first_s, true),
+                               summary(runs, &Verdict::gap_s, true),
+                               summary(runs, &Verdict::recovery_s, runs.front().recovers),
+                               share(sum.located),
+                               share(sum.lost),
+                               fmt::format("{:.0f} cm, {:.1f} deg", 100 * sum.worst_m, sum.worst_deg)};
+  std::string line = "|";
+  for (const std::string& cell : cells) line += " " + cell + " |";
+  return line + "\n";
 }
 
 }  // namespace
@@ -93,11 +114,27 @@ Verdict judge(const Scenario& scenario, const Performed& performed) {
 }
 
 std::string to_table(const std::vector<Verdict>& verdicts) {
-  std::string table =
-      "| scenario | runs | network frames lost | requests | unanswered | verified | wrong | first verified | "
-      "longest "
-      "without | verified again after | frames with a pose | told lost | worst pose |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  constexpr const char* kColumns[] = {"scenario",
+                                      "runs",
+                                      "lost on the device's link",
+                                      "requests",
+                                      "unanswered",
+                                      "verified",
+                                      "wrong",
+                                      "answered after",
+                                      "p95",
+                                      "first verified",
+                                      "longest without",
+                                      "verified again after",
+                                      "frames with a pose",
+                                      "told lost",
+                                      "worst pose"};
+  std::string table = "|", rule = "|";
+  for (const char* column : kColumns) {
+    table += fmt::format(" {} |", column);
+    rule += " --- |";
+  }
+  table += "\n" + rule + "\n";
   std::vector<std::string> names;
   for (const Verdict& verdict : verdicts)
     if (std::ranges::find(names, verdict.scenario) == names.end()) names.push_back(verdict.scenario);
@@ -122,6 +159,8 @@ std::string to_json(const std::vector<Verdict>& verdicts) {
                     {"replies", v.replies},
                     {"verified", v.verified},
                     {"verified_wrong", v.wrong},
+                    {"answer_s", or_null(v.answer_s)},
+                    {"late_answer_s", or_null(v.late_answer_s)},
                     {"first_s", or_null(v.first_s)},
                     {"gap_s", or_null(v.gap_s)},
                     {"recovery_s", or_null(v.recovery_s)},

@@ -79,6 +79,7 @@ struct Client {
         link(ClientLink::create(*dispatcher, id,
                                 {.on_reply = [this](SpotReply r) { replies.put(std::move(r)); },
                                  .on_server = [this](bool matched) { server.put(matched); },
+                                 .on_server_found = [this] { ++found; },
                                  .on_bad_reply = {}})
                  .value()) {
     dispatcher->start();
@@ -87,6 +88,7 @@ struct Client {
 
   Inbox<SpotReply> replies;
   Inbox<bool> server;
+  std::atomic<int> found = 0;
   Participant seat;
   std::unique_ptr<Dispatcher> dispatcher;
   std::unique_ptr<ClientLink> link;
@@ -275,6 +277,24 @@ TEST(Link, AClientSeesTheServerComeAndGo) {
   const auto sent = client.link->send(sample_request());
   ASSERT_FALSE(sent);
   EXPECT_NE(sent.error().message.find("no server"), std::string::npos);
+}
+
+TEST(Link, AServerThatBeganAnewIsFoundAgain) {
+  Client client(107, "robot1");
+  for (const int times : {1, 2}) {
+    const Server server(107);
+    EXPECT_TRUE(eventually([&] { return client.found == times; }));
+  }
+}
+
+TEST(Link, AnAnnouncementChangesNothingElse) {
+  Server server(107);
+  Client client(107, "robot1");
+  ASSERT_TRUE(eventually([&] { return client.found == 1; }));
+  for (int i = 0; i < 20; ++i) client.link->announce();
+  ASSERT_TRUE(client.link->send(sample_request("robot1")));
+  EXPECT_TRUE(server.arrivals.take());
+  EXPECT_EQ(client.found, 1);
 }
 
 TEST(Link, ARestartedClientDoesNotHearTheRepliesToItsEarlierRun) {

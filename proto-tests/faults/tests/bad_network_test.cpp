@@ -88,7 +88,7 @@ TEST_F(Network, LosesTheShareThatItIsToldTo) {
   const auto got = hundred_to_b();
   EXPECT_GT(got.size(), 50u);
   EXPECT_LT(got.size(), 90u);
-  EXPECT_GT(network_->counters().lost, 9u);
+  EXPECT_GT(network_->counters("b").lost, 9u);
 }
 
 TEST_F(Network, DelaysAndReorders) {

@@ -78,6 +78,14 @@ std::string_view fragments_xml(const DomainOptions& options) {
                                                                     : "";
 }
 
+/// A receiving thread of its own for unicast is woken, to end, by a datagram to the address that it had when it
+/// began. Where that is gone the participant never ends (Cyclone 0.10.2, seen when a device roamed); with one
+/// thread for all it is woken through a pipe.
+std::string_view threads_xml(Role role) {
+  return role == Role::client || role == Role::peer ? "<MultipleReceiveThreads>false</MultipleReceiveThreads>"
+                                                    : "";
+}
+
 /// Participant creation fails where the kernel allows less than the least that is asked for.
 int allowed_kb(int wanted_kb, const char* setting, const char* name) {
   std::ifstream file(setting);
@@ -117,9 +125,9 @@ Result<std::string> profile_xml(const DomainOptions& options) {
       R"(<Discovery><ParticipantIndex>{}</ParticipantIndex>{}<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>)"
       R"(<SPDPInterval>{}</SPDPInterval><LeaseDuration>20s</LeaseDuration></Discovery>)"
       R"(<Internal><SocketReceiveBufferSize min="{}kB"/><SocketSendBufferSize min="{}kB"/>)"
-      R"(<MaxSampleSize>32MB</MaxSampleSize></Internal></Domain></CycloneDDS>)",
+      R"(<MaxSampleSize>32MB</MaxSampleSize>{}</Internal></Domain></CycloneDDS>)",
       interface_xml(options.interface), fragments_xml(options), index_of(options.role), peers_xml(options),
-      announced_every(options.role), receive_kb, send_kb);
+      announced_every(options.role), receive_kb, send_kb, threads_xml(options.role));
 }
 
 }  // namespace liloc::wire

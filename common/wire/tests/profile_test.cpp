@@ -47,6 +47,11 @@ TEST(Profile, ADevicesDatagramsFitAFrameOfEthernet) {
   EXPECT_FALSE(has(*profile_xml({.role = Role::source, .interface = "eth0"}), "MaxMessageSize"));
 }
 
+TEST(Profile, ADeviceThatRoamsCanEndItsParticipant) {
+  EXPECT_TRUE(has(*profile_xml({}), "<MultipleReceiveThreads>false<"));
+  EXPECT_FALSE(has(*profile_xml({.role = Role::server}), "MultipleReceiveThreads"));
+}
+
 TEST(Profile, SourcesTellThatTheyAreThereMoreOften) {
   EXPECT_TRUE(has(*profile_xml({}), "<SPDPInterval>1s<"));
   EXPECT_TRUE(has(*profile_xml({.role = Role::source}), "<SPDPInterval>200ms<"));

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <thread>
 
 #include "client/include/liloc/client.hpp"
@@ -193,12 +196,20 @@ Result<std::string> play_ceiling(const Performance& performance, const wire::Dom
   return std::string("over");
 }
 
-Result<std::string> play_device(const Performance& performance, const wire::DomainOptions& seat) {
+Result<std::string> play_device(const Performance& performance, const wire::DomainOptions& seat,
+                                const std::filesystem::path& out) {
   auto truth = replay::Truth::of(performance.recording.devices.front());
   if (!truth) return tl::unexpected(truth.error());
   Judge judge(performance, std::move(*truth));
+  client::Options options = client_options(performance, seat);
+  options.trace_folder = out;
+  client::set_log([&performance, file = std::make_shared<std::ofstream>(out / "client.log"),
+                   mutex = std::make_shared<std::mutex>()](int level, const std::string& line) {
+    const std::scoped_lock lock(*mutex);
+    *file << fmt::format("{:7.3f} s, level {}: {}\n", performance.now_s(), level, line) << std::flush;
+  });
   auto device = client::Client::create(
-      client_options(performance, seat), [&](const client::PoseUpdate& update) { judge.frame(update); },
+      options, [&](const client::PoseUpdate& update) { judge.frame(update); },
       [&](const client::Reply& reply) { judge.reply(reply); });
   if (!device) return fail("{}", device.error());
   push_all(*device.value(), performance);

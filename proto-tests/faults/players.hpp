@@ -52,9 +52,10 @@ struct DeviceStory {
 /// Streams the ceiling's frames until the performance is over or a stop signal. Errors: DDS.
 [[nodiscard]] Result<std::string> play_ceiling(const Performance& performance, const wire::DomainOptions& seat);
 
-/// Is the recording's first device: pushes its frames into a client, and hands back a DeviceStory as bytes.
-/// Errors: DDS, no ground truth.
-[[nodiscard]] Result<std::string> play_device(const Performance& performance, const wire::DomainOptions& seat);
+/// Is the recording's first device: pushes its frames into a client, which leaves its traces and its log in
+/// `out`, and hands back a DeviceStory as bytes. Errors: DDS, no ground truth.
+[[nodiscard]] Result<std::string> play_device(const Performance& performance, const wire::DomainOptions& seat,
+                                              const std::filesystem::path& out);
 
 /// Of bytes of `play_device`, in this program's own layout.
 [[nodiscard]] DeviceStory story_from(std::string_view bytes);

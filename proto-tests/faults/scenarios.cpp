@@ -99,7 +99,7 @@ std::vector<Scenario> of_the_sensors() {
        silence({0, 1, 2}, kTrouble_s, kTrouble_s + 4),
        {happens(kTrouble_s, Mark::begins), happens(kTrouble_s + 4, Mark::over)}},
       {"clock-ahead", "the device's clock is set 5 s ahead", 20, 1, false, steps(5, 0), {begins_and_over}},
-      {"clock-back", "the device's clock is set 5 s back", 20, 1, false, steps(-5, 0), {begins_and_over}},
+      {"clock-back", "the device's clock is set 5 s back", 20, 1, false, steps(-5.013, 0), {begins_and_over}},
       {"ceiling-clock", "the LiDARs' clock is set 2 s ahead", 22, 1, false, steps(0, 2), {begins_and_over}},
   };
 }

@@ -172,8 +172,13 @@ Status Stage::begin(const Performance& performance) {
   const Status ceiling = start(
       kCeiling, [&] { return play_ceiling(performance, seat(wire::Role::source)); }, ceiling_);
   if (!ceiling) return ceiling;
-  return start(
-      kDevice, [&] { return play_device(performance, seat(wire::Role::client)); }, device_);
+  const fs::path traces = options_.out / kDevice;
+  std::error_code error;
+  fs::create_directories(traces, error);
+  if (error)
+    return fail("{}: cannot be made ({}); free the name or the disk", traces.string(), error.message());
+  const auto device = [&] { return play_device(performance, seat(wire::Role::client), traces); };
+  return start(kDevice, device, device_);
 }
 
 Result<DeviceStory> Stage::end() {

@@ -34,7 +34,7 @@ Status Network::open() {
   if (!participant) return tl::unexpected(participant.error());
   auto dispatcher = wire::Dispatcher::create(*participant);
   if (!dispatcher) return tl::unexpected(dispatcher.error());
-  auto link = wire::ClientLink::create(**dispatcher, client_id_, callbacks_.link);
+  auto link = wire::ClientLink::create(**dispatcher, client_id_, callbacks_.link, session_);
   if (!link) return tl::unexpected(link.error());
   // What cannot be read of a status says nothing of the codes; replies tell of another version.
   const Status subscribed =
@@ -46,6 +46,7 @@ Status Network::open() {
   participant_ = std::move(*participant);
   dispatcher_ = std::move(*dispatcher);
   link_ = std::move(*link);
+  session_ = link_->session();
   return {};
 }
 

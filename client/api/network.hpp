@@ -59,7 +59,8 @@ class Network {
   std::optional<wire::Participant> participant_;
   std::unique_ptr<wire::Dispatcher> dispatcher_;
   std::unique_ptr<wire::ClientLink> link_;
-  std::jthread keeper_;  // last: it ends before what it uses
+  std::uint64_t session_ = 0;  ///< 0 before the first link
+  std::jthread keeper_;        // last: it ends before what it uses
 };
 
 }  // namespace liloc::client

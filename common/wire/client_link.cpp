@@ -85,13 +85,13 @@ ClientLink::~ClientLink() {
 }
 
 Result<std::unique_ptr<ClientLink>> ClientLink::create(Dispatcher& dispatcher, const std::string& client_id,
-                                                       ClientCallbacks callbacks) {
+                                                       ClientCallbacks callbacks, std::uint64_t session) {
   const auto id = valid_id(client_id, "client_id");
   if (!id) return tl::unexpected(id.error());
   auto impl = std::make_shared<Impl>();
   impl->client_id = *id;
   impl->participant = dispatcher.participant().handle();
-  impl->session = random_session();
+  impl->session = session != 0 ? session : random_session();
   impl->callbacks = std::move(callbacks);
   const auto participant = dispatcher.participant().handle();
   const Qos partition = partition_qos(client_partition(*id));
@@ -127,6 +127,10 @@ Result<std::unique_ptr<ClientLink>> ClientLink::create(Dispatcher& dispatcher, c
         dispatcher.attach(impl->reader, {}, report), dispatcher.attach(impl->writer.handle(), {}, report)})
     if (!attached) return tl::unexpected(attached.error());
   return std::unique_ptr<ClientLink>(new ClientLink(std::move(impl)));
+}
+
+std::uint64_t ClientLink::session() const {
+  return impl_->session;
 }
 
 bool ClientLink::server_matched() const {

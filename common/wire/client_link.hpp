@@ -25,9 +25,11 @@ struct ClientCallbacks {
 class ClientLink {
  public:
   /// Before the dispatcher starts; the dispatcher must outlive the link's last `send`. Error: not a valid id.
+  /// `session`: of an earlier link of this run of the client, so that the server takes both for one; 0: drawn.
   [[nodiscard]] static Result<std::unique_ptr<ClientLink>> create(Dispatcher& dispatcher,
                                                                   const std::string& client_id,
-                                                                  ClientCallbacks callbacks);
+                                                                  ClientCallbacks callbacks,
+                                                                  std::uint64_t session = 0);
   ~ClientLink();
   ClientLink(const ClientLink&) = delete;
   ClientLink& operator=(const ClientLink&) = delete;
@@ -36,6 +38,7 @@ class ClientLink {
   /// request goes nowhere, and that is an error; so is a request that cannot travel (over 256 poses, 256 KiB of
   /// cloud). Any thread.
   [[nodiscard]] Status send(const SpotRequest& request);
+  [[nodiscard]] std::uint64_t session() const;
   /// Tells the servers' hosts that this client is here, ahead of the time when it would tell them anyway: a
   /// server that was started anew finds its clients by that. Any thread.
   void announce();

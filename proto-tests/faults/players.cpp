@@ -205,6 +205,7 @@ Result<std::string> play_device(const Performance& performance, const wire::Doma
   options.trace_folder = out;
   client::set_log([&performance, file = std::make_shared<std::ofstream>(out / "client.log"),
                    mutex = std::make_shared<std::mutex>()](int level, const std::string& line) {
+    if (level < 1) return;
     const std::scoped_lock lock(*mutex);
     *file << fmt::format("{:7.3f} s, level {}: {}\n", performance.now_s(), level, line) << std::flush;
   });

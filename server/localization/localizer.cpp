@@ -130,6 +130,26 @@ void Localizer::forget(const std::string& client_id) {
   impl_->troubled.erase(client_id);
 }
 
+std::optional<Remembered> Localizer::remembered(const std::string& client_id) const {
+  std::unique_lock lock(impl_->mutex);
+  const auto found = impl_->sessions.find(client_id);
+  if (found == impl_->sessions.end()) return std::nullopt;
+  const auto held = found->second;
+  lock.unlock();
+  const std::scoped_lock in_turn(held->mutex);
+  return held->remembered();
+}
+
+void Localizer::resume(const std::string& client_id, const Remembered& remembered, double age_s) {
+  const VerifyOptions verify;
+  // At least one: between the last spot and the next the odometry of one request is known.
+  const double spots = 1 + age_s / to_seconds(kRequestInterval);
+  DeviceSession::Segment segment{remembered.odom_segment, Tracks(verify.tracks)};
+  segment.followed = unwatched(remembered.followed, spots, verify.step_sd_rad, verify.step_sd_m);
+  const std::scoped_lock lock(impl_->mutex);
+  impl_->sessions[client_id] = std::make_shared<DeviceSession>(impl_->options, std::move(segment));
+}
+
 void Localizer::forget_all() {
   const std::scoped_lock lock(impl_->mutex);
   impl_->sessions.clear();

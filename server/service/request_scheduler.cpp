@@ -34,13 +34,14 @@ RequestScheduler::~RequestScheduler() {
 }
 
 void RequestScheduler::submit(wire::Arrival arrival) {
-  bool stopping = false, begins = false, late = false, has_twin = false;
+  bool stopping = false, first = false, begins = false, late = false, has_twin = false;
   {
     const std::scoped_lock lock(mutex_);
     stopping = stopping_;
     if (!stopping && !sessions_.admit(arrival)) arrival.problem = Reason::rate_limit;
     if (!stopping && arrival.problem == Reason::none) {
       has_twin = sessions_.has_twin(arrival.from);
+      first = !sessions_.is_current(arrival.from);
       begins = sessions_.begins(arrival.from);
       late = sessions_.is_late(arrival.from, arrival.request.seq);
     }
@@ -56,6 +57,7 @@ void RequestScheduler::submit(wire::Arrival arrival) {
                    arrival.from.client_id, held_back(*held));
   if (late) return refuse(arrival, Reason::late, "a request as new as this was answered already");
   if (begins && backend_.forget) backend_.forget(arrival.from.client_id);
+  if (first && backend_.begin) backend_.begin(arrival.from.client_id, arrival.from.session);
 
   if (auto older = take_waiting(arrival.from.client_id)) {
     if (is_newer(*older, arrival)) std::swap(*older, arrival);  // they came in the wrong order
@@ -163,6 +165,7 @@ void RequestScheduler::work_on(const wire::Arrival& arrival) {
                  held_back(*held));
     reply = refusal(arrival.request, Reason::not_found, fmt::format("internal error: {}", error.what()));
   }
+  if (backend_.on_located) backend_.on_located(arrival.from.client_id, arrival.from.session);
   tell(Stage::work, begun);
   bool is_current = false;
   {

@@ -106,6 +106,9 @@ Status Stage::start_server(std::size_t server) {
 void Stage::kill_server(std::size_t server) {
   if (!servers_[server]) return;
   kill(servers_[server]->pid(), SIGKILL);
+  // A process whose threads are traced ends once the tracer has seen them end.
+  for (const pid_t thread : hung_[server]) waitpid(thread, nullptr, __WALL);
+  hung_[server].clear();
   (void)servers_[server]->stop();
   servers_[server].reset();
 }
@@ -127,16 +130,16 @@ void Stage::thaw_device() {
 }
 
 Status Stage::hang_workers(std::size_t server) {
-  std::size_t found = 0;
   const fs::path threads = fmt::format("/proc/{}/task", servers_[server]->pid());
   for (const auto& thread : fs::directory_iterator(threads)) {
     std::string name;
     std::getline(std::ifstream(thread.path() / "comm"), name);
     if (name != kWorker) continue;
-    if (const Status stopped = stop_thread(std::stoi(thread.path().filename())); !stopped) return stopped;
-    ++found;
+    const pid_t id = std::stoi(thread.path().filename());
+    if (const Status stopped = stop_thread(id); !stopped) return stopped;
+    hung_[server].push_back(id);
   }
-  return found > 0 ? Status{} : fail("{}: no thread is named {}", threads.string(), kWorker);
+  return !hung_[server].empty() ? Status{} : fail("{}: no thread is named {}", threads.string(), kWorker);
 }
 
 Status Stage::fill_disk() {

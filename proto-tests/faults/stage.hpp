@@ -55,7 +55,10 @@ class Stage {
 
  private:
   Stage(StageOptions options, const Recording& recording)
-      : options_(std::move(options)), recording_(recording), servers_(options_.servers) {}
+      : options_(std::move(options)),
+        recording_(recording),
+        servers_(options_.servers),
+        hung_(options_.servers) {}
   [[nodiscard]] Status open_disk();
   [[nodiscard]] wire::DomainOptions seat(wire::Role role) const;
 
@@ -63,6 +66,7 @@ class Stage {
   const Recording& recording_;
   std::unique_ptr<BadNetwork> network_;
   std::vector<std::optional<replay::Child>> servers_;  ///< none while killed
+  std::vector<std::vector<pid_t>> hung_;               ///< threads of each that are stopped
   std::optional<load::Forked> ceiling_, device_;
   bool disk_ = false;
 };

@@ -1,5 +1,6 @@
 #include "server/app/session_store.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <charconv>
 #include <cmath>

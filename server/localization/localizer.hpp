@@ -75,8 +75,9 @@ class Localizer {
   /// What another server or run could go on with; none while the client is searched. Waits for the client's
   /// request in work.
   [[nodiscard]] std::optional<Remembered> remembered(const std::string& client_id) const;
-  /// Goes on with what was remembered, in place of a search of the room: the next spot judges it as any other.
-  /// So many seconds old; in place of what is known of the client.
+  /// Goes on with what was remembered so many seconds ago, in place of a search of the room: the next spot
+  /// judges it as any other. To be called for the same run of the client alone: where it was forgotten less
+  /// than a minute ago its session goes on as it was.
   void resume(const std::string& client_id, const Remembered& remembered, double age_s);
   /// Forgets all clients; what verified answers have taught stays.
   void forget_all();

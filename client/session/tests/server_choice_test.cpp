@@ -104,7 +104,9 @@ TEST(ServerChoice, OneThatIsAlwaysSlowerIsGivenTheTimeThatItTakes) {
     const auto asked = kStart + std::chrono::seconds(seq);
     EXPECT_FALSE(choice.takes(from("edge2", seq), asked));
     EXPECT_FALSE(choice.take_overdue(asked + 90ms)) << seq;
-    if (seq > 2) EXPECT_FALSE(choice.take_overdue(asked + 150ms)) << seq;
+    if (seq > 2) {
+      EXPECT_FALSE(choice.take_overdue(asked + 150ms)) << seq;
+    }
     EXPECT_TRUE(choice.takes(from("edge1", seq), asked + (seq > 2 ? 160ms : 95ms)));
   }
   const auto asked = kStart + 20s;

@@ -21,7 +21,7 @@ TEST(Faults, ALossyLinkAndAKilledServerCostTimeAndNothingElse) {
   const replay::TempFolder folder;
   sim::SimOptions site;
   site.seed = 7;
-  site.seconds = 12;
+  site.seconds = 10;
   site.still_seconds = 1;
   site.device_rate_hz = 10;
   const Status written = sim::write_recording(site, folder.path() / "rec");
@@ -31,7 +31,7 @@ TEST(Faults, ALossyLinkAndAKilledServerCostTimeAndNothingElse) {
 
   Scenario scenario;
   scenario.name = "loss and kill";
-  scenario.seconds = 12;
+  scenario.seconds = 10;
   scenario.acts = {{0, Mark::none,
                     [](Stage& stage) {
                       stage.network().set(kDevice, {.loss = 0.05, .delay_ms = 10, .jitter_ms = 5});

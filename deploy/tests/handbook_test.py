@@ -32,7 +32,8 @@ command="$(sed -n 's/^ExecStart=//p' "$file")"
 pid="$PWD/$unit.pid"
 if [[ "$verb" == stop || "$verb" == restart ]]; then
   kill "$(cat "$pid")"
-  while kill -0 "$(cat "$pid")" 2>/dev/null; do sleep 0.05; done
+  # One that has ended may stay as a zombie: nobody waits for it here.
+  while grep -qs '^State:[[:space:]]*[^Z]' "/proc/$(cat "$pid")/status"; do sleep 0.05; done
   [[ "$verb" != stop ]] || exit 0
 fi
 mkdir -p /var/lib/liloc

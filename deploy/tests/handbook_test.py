@@ -33,7 +33,7 @@ pid="$PWD/$unit.pid"
 if [[ "$verb" == stop || "$verb" == restart ]]; then
   kill "$(cat "$pid")"
   # One that has ended may stay as a zombie: nobody waits for it here.
-  while grep -qs '^State:[[:space:]]*[^Z]' "/proc/$(cat "$pid")/status"; do sleep 0.05; done
+  while grep -qs '^State:[[:space:]]*[A-Y]' "/proc/$(cat "$pid")/status"; do sleep 0.05; done
   [[ "$verb" != stop ]] || exit 0
 fi
 mkdir -p /var/lib/liloc

@@ -4,17 +4,19 @@
 
 #include <atomic>
 
+#include "client/api/network.hpp"
 #include "client/api/public_types.hpp"
 #include "client/session/connection_watch.hpp"
 #include "common/base/log.hpp"
 #include "common/credentials/end_of_credentials.hpp"
-#include "common/wire/spots/client_link.hpp"
-#include "common/wire/spots/status.hpp"
 
 namespace liloc::client {
 namespace {
 
-constexpr std::size_t kMostPoints = 4'000'000;  // as in common/wire/sensors/convert_points.cpp
+// While nobody answers: as long as a server that is back may not know of its clients, at most; by hand.
+constexpr auto kAnnounceEvery = std::chrono::milliseconds(250);
+constexpr auto kOverdueEvery = std::chrono::milliseconds(20);  // of 100 ms at least that a server may be late
+constexpr std::size_t kMostPoints = 4'000'000;                 // as in common/wire/sensors/convert_points.cpp
 
 Outcome<Taken> to_public(const Status& status) {
   return status ? Outcome<Taken>(Taken{}) : Outcome<Taken>::failed(status.error().message);
@@ -29,13 +31,14 @@ void set_log(LogCallback callback) {
   });
 }
 
-/// Members go from the last to the first: the link, the dispatcher with its thread, then the session it calls.
+/// Members go from the last to the first: the network with its threads, then the session that it calls.
 struct Client::Impl {
   /// A frame that does not even come to the session.
   Outcome<Taken> unusable(const std::string& why) {
     session->refuse_frame(why);
     return Outcome<Taken>::failed(fmt::format("{}: {}", id, why));
   }
+  [[nodiscard]] Network::Callbacks network_callbacks();
   Status connect(const Options& options);
   void look();
   Status stop();
@@ -48,9 +51,7 @@ struct Client::Impl {
   std::unique_ptr<Session> session;
   std::unique_ptr<ConnectionWatch> watch;
   std::optional<EndOfCredentials> end_of_credentials;
-  std::optional<wire::Participant> participant;
-  std::unique_ptr<wire::Dispatcher> dispatcher;
-  std::unique_ptr<wire::ClientLink> link;
+  std::unique_ptr<Network> network;
 };
 
 void Client::Impl::look() {
@@ -59,45 +60,50 @@ void Client::Impl::look() {
   end_of_credentials->look(now);
 }
 
-Status Client::Impl::connect(const Options& options) {
-  wire::DomainOptions domain;
-  domain.domain = options.domain;
-  domain.role = wire::Role::client;
-  domain.interface = options.network_interface;
-  domain.peers = options.peers;
-  domain.credentials = options.credentials;
-  auto joined = wire::Participant::create(domain);
-  if (!joined) return tl::unexpected(joined.error());
-  participant = std::move(*joined);
-  auto made = wire::Dispatcher::create(*participant);
-  if (!made) return tl::unexpected(made.error());
-  dispatcher = std::move(*made);
-  wire::ClientCallbacks callbacks;
-  callbacks.on_reply = [this](const SpotReply& reply) {
+Network::Callbacks Client::Impl::network_callbacks() {
+  Network::Callbacks callbacks;
+  callbacks.link.on_reply = [this](const SpotReply& reply) {
     if (session->add_reply(reply) && on_reply) on_reply(to_public(reply));
   };
-  callbacks.on_server = [this](bool matched) { connected = matched; };
-  callbacks.on_namesake = [this] { session->namesake_heard(); };
-  callbacks.on_bad_reply = [this](const std::string& why) { session->reply_dropped(why); };
-  auto linked = wire::ClientLink::create(*dispatcher, id, std::move(callbacks));
-  if (!linked) return tl::unexpected(linked.error());
-  link = std::move(*linked);
+  callbacks.link.on_server = [this](bool matched) { connected = matched; };
+  callbacks.link.on_server_found = [this] { session->server_found(); };
+  callbacks.link.on_namesake = [this] { session->namesake_heard(); };
+  callbacks.link.on_bad_reply = [this](const std::string& why) { session->reply_dropped(why); };
+  callbacks.on_status = [this](const wire::ServerStatus& status) {
+    session->add_server(status.server_id, status.codecs);
+  };
+  callbacks.tasks.emplace_back(std::chrono::seconds(1), [this] { look(); });
+  callbacks.tasks.emplace_back(kOverdueEvery, [this] {
+    if (const auto reply = session->add_overdue_reply(); reply && on_reply) on_reply(to_public(*reply));
+  });
+  callbacks.tasks.emplace_back(kAnnounceEvery, [this] {
+    if (session->unanswered()) network->announce();
+  });
+  return callbacks;
+}
+
+Status Client::Impl::connect(const Options& options) {
+  wire::DomainOptions seat;
+  seat.domain = options.domain;
+  seat.role = wire::Role::client;
+  seat.interface = options.network_interface;
+  seat.peers = options.peers;
+  seat.credentials = options.credentials;
   watch = std::make_unique<ConnectionWatch>(
       ConnectionWatch::Names{id, options.frames_from,
                              fmt::format("domain {}, interface {}", options.domain, options.network_interface)},
       std::chrono::steady_clock::now());
   end_of_credentials.emplace(options.credentials, std::chrono::steady_clock::now());
-  dispatcher->every(std::chrono::seconds(1), [this] { look(); });
-  // What cannot be read of a status says nothing of the codes; replies tell of another version.
-  return wire::subscribe_status(*dispatcher, [this](const Result<wire::ServerStatus>& status) {
-    if (status) session->add_server(status->server_id, status->codecs);
-  });
+  auto joined = Network::join(std::move(seat), id, network_callbacks());
+  if (!joined) return tl::unexpected(joined.error());
+  network = std::move(*joined);
+  return {};
 }
 
 /// Frames first, then requests, then the network: the session's threads still use the link while they end.
 Status Client::Impl::stop() {
   const Status stopped = session->stop();
-  dispatcher->stop();
+  network->stop();
   return stopped;
 }
 
@@ -120,14 +126,14 @@ Outcome<std::unique_ptr<Client>> Client::create(const Options& options, PoseCall
   self.on_reply = std::move(on_reply);
   if (const Status ok = self.connect(options); !ok) return Made::failed(ok.error().message);
   SessionCallbacks callbacks;
-  callbacks.send = [&self](const SpotRequest& request) { return self.link->send(request); };
+  callbacks.send = [&self](const SpotRequest& request) { return self.network->send(request); };
   callbacks.on_frame = [&self](const FrameResult& frame, Tracking tracking) {
     if (self.on_pose) self.on_pose(to_public(frame, tracking, self.connected));
   };
   auto session = Session::create(std::move(*session_options), std::move(callbacks));
   if (!session) return Made::failed(session.error().message);
   self.session = std::move(*session);
-  self.dispatcher->start();
+  self.network->start();
   return std::unique_ptr<Client>(new Client(std::move(impl)));
 }
 

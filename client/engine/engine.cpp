@@ -286,6 +286,10 @@ void Engine::add_reply(const SpotReply& reply) {
   if (impl_->link.located(impl_->segment)) impl_->schedule.search_ended();
 }
 
+void Engine::server_found() {
+  impl_->schedule.server_found();
+}
+
 std::string Engine::problem() const {
   if (!impl_->started) return "";
   if (std::string problem = impl_->clock_problem(); !problem.empty()) return problem;

@@ -57,6 +57,9 @@ class Engine {
   [[nodiscard]] std::vector<std::uint64_t> take_unanswered();
   /// Moves map -> odom when verified. Answers of a past odometry segment are ignored.
   void add_reply(const SpotReply& reply);
+  /// A server has come: the next frame that can asks it, however long ago the last request was, and others
+  /// follow quickly until an answer is verified.
+  void server_found();
 
   [[nodiscard]] std::optional<Pose> T_map_odom() const;
   [[nodiscard]] Tracking tracking() const;

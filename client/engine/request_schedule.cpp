@@ -27,7 +27,7 @@ bool RequestSchedule::due(StampNs stamp_ns, bool informative, bool sure) {
     return false;
   }
   const bool interval_over = !last_ns_ || stamp_ns - *last_ns_ >= options_.interval_ns - kSlack;
-  const bool hurried = !located_ && hurried_ns_ && stamp_ns >= *hurried_ns_ - kSlack;
+  const bool hurried = (!located_ || with_new_server_) && hurried_ns_ && stamp_ns >= *hurried_ns_ - kSlack;
   const bool soon = !last_ns_ || stamp_ns - *last_ns_ >= options_.searching_interval_ns - kSlack;
   if (!interval_over && !hurried && !(soon && (after_gap_ || (sure && after_doubt_)))) return false;
   after_gap_ = false;
@@ -49,11 +49,18 @@ StampNs RequestSchedule::searching_gap_ns() const {
 }
 
 void RequestSchedule::answered(const SpotReply& reply, StampNs now_ns) {
+  if (reply.verified()) with_new_server_ = false;
   const bool newest = !pending_.empty() && pending_.back().seq == reply.seq;
   std::erase_if(pending_, [&](const Pending& p) { return p.seq == reply.seq; });
   if (!newest || !worth_another(reply)) return;
   const StampNs took_ns = std::max<StampNs>(now_ns - *last_ns_, 0);
   hurried_ns_ = *last_ns_ + std::max(searching_gap_ns(), 2 * took_ns);
+}
+
+void RequestSchedule::server_found() {
+  after_gap_ = true;
+  with_new_server_ = true;
+  searching_since_ns_.reset();
 }
 
 void RequestSchedule::search_begins() {

@@ -33,6 +33,9 @@ class RequestSchedule {
   /// A request left / was answered, as of the newest frame's stamp.
   void sent(std::uint64_t seq, StampNs stamp_ns);
   void answered(const SpotReply& reply, StampNs now_ns);
+  /// A server has come, which may know nothing of this device: the next frame that can asks, but for the lower
+  /// bound, and until an answer is verified there is haste as in a search.
+  void server_found();
   /// An answer was verified: there is no haste any more.
   void search_ended() { located_ = true; }
   /// The odometry broke: what was verified holds no longer.
@@ -55,6 +58,7 @@ class RequestSchedule {
   std::optional<StampNs> searching_since_ns_;  ///< stamp of the first request of this search
   StampNs gap_ns_ = 0;                         ///< between the last two requests
   bool after_gap_ = false, after_doubt_ = false, located_ = false;
+  bool with_new_server_ = false;  ///< nothing was verified since one came
   std::vector<Pending> pending_;
 };
 

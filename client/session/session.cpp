@@ -19,6 +19,8 @@ namespace liloc {
 namespace {
 
 constexpr std::size_t kOutbox = 2;  // an older request is worthless once a newer one waits; by hand
+// Above what an answer takes where the ceiling is waited for (100 ms) and a room is searched; by hand.
+constexpr auto kUnanswered = std::chrono::milliseconds(250);
 constexpr auto kNamesakeTold = std::chrono::seconds(10);  // a few requests of the other device; by hand
 // Of a frame for the odometry of its stamp; by hand.
 constexpr auto kOdometryWait = std::chrono::milliseconds(60);
@@ -62,6 +64,9 @@ struct Session::Impl {
   void send(SpotRequest request);
   [[nodiscard]] CloudCodec choose_codec();
   [[nodiscard]] bool follows(const SpotReply& reply);
+  [[nodiscard]] std::optional<SpotReply> take_overdue();
+  void tell_change(const std::string& before, const std::string& followed);
+  void use(const SpotReply& reply);
   [[nodiscard]] std::string namesake_problem() const {
     return fmt::format("another device asks as {}: give each an id of its own", id());
   }
@@ -79,6 +84,7 @@ struct Session::Impl {
   CodecChoice codecs;
   CloudCodec codec;  ///< of the newest requests
   OpenRequests open;
+  std::optional<SessionClock::Time> unanswered_since;  ///< the first request since the last reply left
   std::optional<SessionClock::Time> namesake_at;
 
   std::mutex engine_mutex;  ///< held for one frame or one reply
@@ -189,6 +195,7 @@ void Session::Impl::send(SpotRequest request) {
   {
     const std::scoped_lock lock(servers_mutex);
     open.sent(request);  // before it leaves: an answer may be quicker than the return
+    if (!unanswered_since) unanswered_since = now();
   }
   const Status sent = callbacks.send ? callbacks.send(request) : Status(fail("no transport"));
   if (sent) return;
@@ -219,12 +226,39 @@ bool Session::Impl::follows(const SpotReply& reply) {
                     reply.server_id, reply.seq));
     return false;
   }
+  unanswered_since.reset();
   const std::string before = servers.followed();
-  if (!servers.takes(reply)) return false;
+  if (!servers.takes(reply, now())) return false;
   lock.unlock();
-  if (!before.empty() && reply.server_id != before)
-    log::limited(server_lines, "{}: {} answers in place of {}", id(), reply.server_id, before);
+  tell_change(before, reply.server_id);
   return true;
+}
+
+void Session::Impl::tell_change(const std::string& before, const std::string& followed) {
+  if (!before.empty() && followed != before)
+    log::limited(server_lines, "{}: {} answers in place of {}", id(), followed, before);
+}
+
+std::optional<SpotReply> Session::Impl::take_overdue() {
+  std::unique_lock lock(servers_mutex);
+  const std::string before = servers.followed();
+  auto reply = servers.take_overdue(now());
+  lock.unlock();
+  if (reply) tell_change(before, reply->server_id);
+  return reply;
+}
+
+void Session::Impl::use(const SpotReply& reply) {
+  if (clock.learn(reply, now())) {
+    report.count(&SessionStats::clock_jumps);
+    log::limited(jump_lines,
+                 "{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
+                 id());
+  }
+  const std::scoped_lock lock(engine_mutex);
+  engine.add_reply(reply);
+  if (trace) trace->on_reply(reply);
+  report.reply(reply);
 }
 
 Status Session::Impl::push(SensorFrame frame) {
@@ -304,17 +338,24 @@ void Session::add_server(const std::string& server_id, const std::vector<CloudCo
 
 bool Session::add_reply(const SpotReply& reply) {
   if (!impl_->follows(reply)) return false;
-  if (impl_->clock.learn(reply, now())) {
-    impl_->report.count(&SessionStats::clock_jumps);
-    log::limited(impl_->jump_lines,
-                 "{}: device and ceiling clocks have jumped against each other; the offset is learned anew",
-                 impl_->id());
-  }
-  const std::scoped_lock lock(impl_->engine_mutex);
-  impl_->engine.add_reply(reply);
-  if (impl_->trace) impl_->trace->on_reply(reply);
-  impl_->report.reply(reply);
+  impl_->use(reply);
   return true;
+}
+
+std::optional<SpotReply> Session::add_overdue_reply() {
+  auto reply = impl_->take_overdue();
+  if (reply) impl_->use(*reply);
+  return reply;
+}
+
+bool Session::unanswered() const {
+  const std::scoped_lock lock(impl_->servers_mutex);
+  return impl_->unanswered_since && now() - *impl_->unanswered_since > kUnanswered;
+}
+
+void Session::server_found() {
+  const std::scoped_lock lock(impl_->engine_mutex);
+  impl_->engine.server_found();
 }
 
 void Session::reply_dropped(const std::string& why) {

@@ -53,6 +53,13 @@ class Session {
   /// Waits at most for the frame in work. False where another server's answers count (ServerChoice), and for
   /// one that no request of this session asked for.
   bool add_reply(const SpotReply& reply);
+  /// To be called often, as each 20 ms: another server's reply that counts by now, because the followed one is
+  /// late with the same request. It was added; waits as `add_reply` does.
+  std::optional<SpotReply> add_overdue_reply();
+  /// Requests have been unanswered for a while, whichever server is asked: each may be gone, and started anew.
+  [[nodiscard]] bool unanswered() const;
+  /// A server was found: what was asked before may have gone nowhere, so the next frame asks.
+  void server_found();
   /// One that could not be understood: counted, and told once in five seconds.
   void reply_dropped(const std::string& why);
   /// Another device was seen to ask under this id: told as a problem for ten seconds.

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <optional>
 
-#include "common/wire/status.hpp"
+#include "common/wire/spots/status.hpp"
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/soak/options.hpp"
 

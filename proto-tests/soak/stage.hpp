@@ -2,7 +2,7 @@
 // The sensors of a run: ceiling LiDARs that come and go, and the cameras of the residents.
 #include <cstdint>
 
-#include "common/wire/participant.hpp"
+#include "common/wire/dds/participant.hpp"
 #include "proto-tests/soak/tape.hpp"
 
 namespace liloc::soak {

@@ -2,7 +2,7 @@
 // Clients of the library that come, are located and go, one process of them.
 #include <type_traits>
 
-#include "common/wire/participant.hpp"
+#include "common/wire/dds/participant.hpp"
 #include "proto-tests/soak/schedule.hpp"
 #include "proto-tests/soak/tape.hpp"
 

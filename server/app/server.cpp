@@ -18,6 +18,7 @@ namespace {
 
 constexpr auto kPreparePeriod = std::chrono::milliseconds(50);  // a third of a ceiling frame's; by hand
 constexpr auto kTrimPeriod = std::chrono::seconds(10);          // a trim takes milliseconds; by hand
+constexpr auto kSaveSessionsPeriod = std::chrono::seconds(1);   // about an interval of requests; by hand
 constexpr auto kSavePeriod = std::chrono::minutes(1);  // so much is lost with a server that is killed; by hand
 
 /// Gives what clients that left have used back to the system; the C library would keep it.
@@ -65,6 +66,7 @@ Server::Server(const ServerOptions& options, Site site)
           global_cloud_, with_idle(options.localizer, [this] { return service_->idle(); }), state_.learned,
           options.save_answers ? AnswerSink([this](Answered answered) { keeper_->keep(std::move(answered)); })
                                : AnswerSink()),
+      sessions_(sessions_file_of(state_.file), global_cloud_.site(), wall_clock_ns(), start_),
       journal_(options.page ? std::make_shared<view::Journal>() : nullptr) {
   saved_ = localizer_.learned();
   global_cloud_.set_known_noise(state_.noise);
@@ -123,7 +125,11 @@ Status Server::open(const ServerOptions& options) {
     if (auto sent = status_publisher_->publish(status()); !sent) log::warning("{}", sent.error().message);
   });
   if (std::uint64_t limit_us = 0; sd_watchdog_enabled(0, &limit_us) > 0)  // three words within the limit
-    dispatcher_->every(std::chrono::milliseconds(limit_us / 3000 + 1), [] { sd_notify(0, "WATCHDOG=1"); });
+    dispatcher_->every(std::chrono::milliseconds(limit_us / 3000 + 1), [this] {
+      const web::Page live = web::live_page(facts());
+      if (live.status == 200) return (void)sd_notify(0, "WATCHDOG=1");
+      log::error("no word to the watchdog, so that this server is started anew: {}", live.body);
+    });
   if (options.status_every_s > 0)
     dispatcher_->every(std::chrono::milliseconds(static_cast<int>(options.status_every_s * 1e3) + 1),
                        [this] { log_status(); });
@@ -148,6 +154,15 @@ Status Server::open_streams(const ServerOptions& options) {
   backend.forget = [this](const std::string& client_id) {
     localizer_.forget(client_id);
     if (journal_) journal_->forget(client_id);
+  };
+  backend.begin = [this](const std::string& client_id, std::uint64_t session) {
+    const auto known = sessions_.begin(client_id, session, std::chrono::steady_clock::now());
+    if (!known) return;
+    log::debug("{} is taken up again as it was {:.1f} s ago", client_id, known->age_s);
+    localizer_.resume(client_id, known->remembered, known->age_s);
+  };
+  backend.on_located = [this](const std::string& client_id, std::uint64_t session) {
+    sessions_.note(client_id, session, localizer_.remembered(client_id), std::chrono::steady_clock::now());
   };
   // A LiDAR whose last frame still counts for the stamp need not show a newer one: people move in between,
   // which registration leaves out anyway, and waiting for the very nearest frame of each takes 80 ms at 6 Hz.
@@ -232,6 +247,7 @@ void Server::keep_prepared(const std::stop_token& stop) {
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
   auto save_at = std::chrono::steady_clock::now() + kSavePeriod;
+  auto sessions_at = std::chrono::steady_clock::now() + kSaveSessionsPeriod;
   HeapTrimmer trimmer;
   while (!stop.stop_requested()) {
     const std::size_t clients = service_->clients();
@@ -241,12 +257,22 @@ void Server::keep_prepared(const std::stop_token& stop) {
     } catch (const std::exception& trouble) {  // the requests will say what is wrong with the room
       log::error("the room's indices were not made: {}", trouble.what());
     }
+    if (std::chrono::steady_clock::now() >= sessions_at) {
+      save_sessions();
+      sessions_at = std::chrono::steady_clock::now() + kSaveSessionsPeriod;
+    }
     if (std::chrono::steady_clock::now() >= save_at) {
       save_learned();
       save_at += kSavePeriod;
     }
     wake.wait_for(lock, stop, kPreparePeriod, [] { return false; });
   }
+}
+
+void Server::save_sessions() {
+  const Status saved = sessions_.save(wall_clock_ns(), std::chrono::steady_clock::now());
+  if (!std::exchange(sessions_saved_, saved.has_value()) || saved) return;
+  log::warning("{}; devices are searched anew after a restart", saved.error().message);
 }
 
 /// At most once a minute, and at the end; only when something was learned.
@@ -287,6 +313,7 @@ void Server::halt() {
   if (service_) service_->stop();
   if (dispatcher_) dispatcher_->stop();
   save_learned();
+  save_sessions();
 }
 
 wire::ServerStatus Server::status() const {

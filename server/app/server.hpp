@@ -7,6 +7,7 @@
 
 #include "common/wire/spots/status.hpp"
 #include "server/app/options.hpp"
+#include "server/app/session_store.hpp"
 #include "server/app/site_state.hpp"
 #include "server/global_cloud/global_cloud.hpp"
 #include "server/ingest/ingest.hpp"
@@ -55,6 +56,7 @@ class Server {
   void log_status() const;
   void keep_prepared(const std::stop_token& stop);
   void save_learned();
+  void save_sessions();
 
   const std::string server_id_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -64,6 +66,7 @@ class Server {
   GlobalCloud global_cloud_;
   const SiteState state_;  ///< as it was at the start
   Localizer localizer_;
+  SessionStore sessions_;
   std::unique_ptr<answers::AnswerKeeper> keeper_;  ///< null: answers are not kept; holds moments of the room
   const std::shared_ptr<view::Journal> journal_;   ///< null where there is no page
   std::optional<wire::Participant> participant_;   // all below live on it
@@ -71,6 +74,7 @@ class Server {
   std::unique_ptr<Ingest> ingest_;
   std::unique_ptr<Service> service_;
   std::unique_ptr<wire::Dispatcher> dispatcher_;  // its thread uses all of the above: it goes first
+  bool sessions_saved_ = true;                    ///< the last time; of the preparer, then of `stop`
   std::jthread preparer_;
   std::atomic<std::chrono::steady_clock::time_point> beat_ = start_;  ///< when the dispatcher was last at work
   web::Metrics metrics_;

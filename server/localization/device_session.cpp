@@ -60,6 +60,11 @@ void conclude(SpotStatus status, Reason reason, SpotReply* reply) {
 
 }  // namespace
 
+std::optional<Remembered> DeviceSession::remembered() const {
+  if (!segment_ || !segment_->followed) return std::nullopt;
+  return Remembered{segment_->id, *segment_->followed};
+}
+
 /// After a search that came to nothing.
 void DeviceSession::refuse(const Found& found, SpotReply* reply) {
   const bool cut_off = found.outcome == Found::Outcome::cut_off;

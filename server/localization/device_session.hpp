@@ -35,6 +35,8 @@ class DeviceSession {
   /// that nobody waits for. Returns what the search of the room rested on; no places where this spot needed
   /// none.
   Evidence answer(const std::shared_ptr<const Spot>& spot, bool spare_time, SpotReply* reply);
+  /// A pose that is followed; none while it searches.
+  [[nodiscard]] std::optional<Remembered> remembered() const;
   /// What it remembers; the next answer rests on it.
   [[nodiscard]] const std::optional<Segment>& segment() const { return segment_; }
 

@@ -26,6 +26,13 @@ Followed begun(const PoseEstimate& estimate, const Pose& T_odom_sensor, double l
   return {estimate, T_odom_sensor, std::min(log_odds, most()), usual};
 }
 
+Followed unwatched(Followed followed, double spots, double sd_rad, double sd_m) {
+  const double survived = probability_of(followed.log_odds) * std::pow(1 - kHazard, spots);
+  followed.log_odds = std::min(most(), std::log(survived / (1 - survived)));
+  followed.estimate = carried(followed.estimate, Pose::Identity(), spots * sd_rad, spots * sd_m);
+  return followed;
+}
+
 void note_look(const LookTerms& look, bool stayed, double novelty, Followed* followed) {
   const double survived = probability_of(followed->log_odds) * (1 - kHazard);
   followed->log_odds = std::log(survived / (1 - survived));

@@ -1,5 +1,7 @@
 #pragma once
 // A pose that was believed, carried from spot to spot: what each spot adds to the belief, and what time takes.
+#include <cstdint>
+
 #include "server/localization/confidence.hpp"
 
 namespace liloc {
@@ -11,6 +13,17 @@ struct Followed {
   double log_odds = 0;                    ///< of the place; of the pose within it `estimate` tells
   LookTerms usual;                        ///< what its spots show on average
 };
+
+/// What may be kept of a device that is followed, and taken up again by another server or another run of this
+/// one.
+struct Remembered {
+  std::uint32_t odom_segment = 0;
+  Followed followed;
+};
+
+/// A place that nobody has looked at for so many spots: less sure, and its pose less known. `sd_rad`, `sd_m`:
+/// of the motion between two spots, taken to err all the same way.
+[[nodiscard]] Followed unwatched(Followed followed, double spots, double sd_rad, double sd_m);
 
 /// A place whose search came to these odds.
 [[nodiscard]] Followed begun(const PoseEstimate& estimate, const Pose& T_odom_sensor, double log_odds,

@@ -1,5 +1,7 @@
 #include "server/localization/localizer.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -11,6 +13,22 @@
 
 namespace liloc {
 
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Sessions of clients that left hold their last clouds, up to some megabytes each. By hand, as how long they
+// may be of use: devices are carried on by odometry for about a minute before they count as lost.
+constexpr std::size_t kMostParked = 16;
+constexpr auto kParkedFor = std::chrono::seconds(60);
+
+struct Parked {
+  std::shared_ptr<DeviceSession> session;
+  Clock::time_point since;
+};
+
+}  // namespace
+
 struct Localizer::Impl {
   GlobalCloud& global_cloud;
   const LocalizerOptions options;
@@ -18,6 +36,7 @@ struct Localizer::Impl {
   std::shared_ptr<const CellBounds> learned;
   mutable std::mutex mutex;
   std::map<std::string, std::shared_ptr<DeviceSession>> sessions;
+  std::map<std::string, Parked> parked;            ///< of clients that left, for those that come back
   std::map<std::string, Pose> last_learned;        ///< per client; a device that stands still teaches once
   std::set<std::string> troubled;                  ///< clients whose trouble the log has
   std::shared_ptr<const Snapshot> first_snapshot;  ///< static_noopt: the room as it was at the start
@@ -28,6 +47,18 @@ struct Localizer::Impl {
     auto& held = sessions[client_id];
     if (!held) held = std::make_shared<DeviceSession>(options);
     return held;
+  }
+
+  /// The caller locks.
+  void park(const std::string& client_id) {
+    const auto now = Clock::now();
+    std::erase_if(parked, [&](const auto& entry) { return now - entry.second.since > kParkedFor; });
+    const auto found = sessions.find(client_id);
+    if (found == sessions.end()) return;
+    parked[client_id] = {std::move(found->second), now};
+    sessions.erase(found);
+    if (parked.size() <= kMostParked) return;
+    parked.erase(std::ranges::min_element(parked, {}, [](const auto& entry) { return entry.second.since; }));
   }
 
   Result<std::shared_ptr<const Snapshot>> snapshot(StampNs stamp_ns) {
@@ -104,6 +135,7 @@ Localizer::Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBo
                      {},
                      {},
                      {},
+                     {},
                      {}}) {}
 
 Localizer::~Localizer() = default;
@@ -125,14 +157,39 @@ SpotReply Localizer::locate(const SpotRequest& request) {
 
 void Localizer::forget(const std::string& client_id) {
   const std::scoped_lock lock(impl_->mutex);
-  impl_->sessions.erase(client_id);
+  impl_->park(client_id);
   impl_->last_learned.erase(client_id);
   impl_->troubled.erase(client_id);
+}
+
+std::optional<Remembered> Localizer::remembered(const std::string& client_id) const {
+  std::unique_lock lock(impl_->mutex);
+  const auto found = impl_->sessions.find(client_id);
+  if (found == impl_->sessions.end()) return std::nullopt;
+  const auto held = found->second;
+  lock.unlock();
+  const std::scoped_lock in_turn(held->mutex);
+  return held->remembered();
+}
+
+void Localizer::resume(const std::string& client_id, const Remembered& remembered, double age_s) {
+  const VerifyOptions verify;
+  // At least one: between the last spot and the next the odometry of one request is known.
+  const double spots = 1 + age_s / to_seconds(kRequestInterval);
+  DeviceSession::Segment segment{remembered.odom_segment, Tracks(verify.tracks)};
+  segment.followed = unwatched(remembered.followed, spots, verify.step_sd_rad, verify.step_sd_m);
+  const std::scoped_lock lock(impl_->mutex);
+  if (const auto whole = impl_->parked.extract(client_id)) {  // with all that it saw, which nobody else has
+    impl_->sessions[client_id] = whole.mapped().session;
+    return;
+  }
+  impl_->sessions[client_id] = std::make_shared<DeviceSession>(impl_->options, std::move(segment));
 }
 
 void Localizer::forget_all() {
   const std::scoped_lock lock(impl_->mutex);
   impl_->sessions.clear();
+  impl_->parked.clear();
   impl_->last_learned.clear();
   impl_->troubled.clear();
 }

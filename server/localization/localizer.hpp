@@ -11,6 +11,7 @@
 #include "common/registration/search/cell_bounds.hpp"
 #include "common/registration/search/gravity_search.hpp"
 #include "server/global_cloud/global_cloud.hpp"
+#include "server/localization/following.hpp"
 
 namespace liloc {
 
@@ -72,6 +73,13 @@ class Localizer {
   [[nodiscard]] SpotReply locate(const SpotRequest& request);
   /// Forgets what is known of a client, e.g. when it has left.
   void forget(const std::string& client_id);
+  /// What another server or run could go on with; none while the client is searched. Waits for the client's
+  /// request in work.
+  [[nodiscard]] std::optional<Remembered> remembered(const std::string& client_id) const;
+  /// Goes on with what was remembered so many seconds ago, in place of a search of the room: the next spot
+  /// judges it as any other. To be called for the same run of the client alone: where it was forgotten less
+  /// than a minute ago its session goes on as it was.
+  void resume(const std::string& client_id, const Remembered& remembered, double age_s);
   /// Forgets all clients; what verified answers have taught stays.
   void forget_all();
   /// What verified answers have taught so far. A new object whenever there was something to learn.

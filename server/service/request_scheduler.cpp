@@ -1,5 +1,8 @@
 #include "server/service/request_scheduler.hpp"
 
+#include <pthread.h>
+
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -21,8 +24,9 @@ RequestScheduler::RequestScheduler(ServiceOptions options, ServiceBackend backen
       backend_(std::move(backend)),
       answer_(std::move(answer)),
       sessions_(options_.max_rate_hz),
-      queue_(options_.queue) {
-  for (int i = 0; i < options_.workers; ++i) workers_.emplace_back([this] { work(); });
+      queue_(options_.queue),
+      begun_(static_cast<std::size_t>(options_.workers)) {
+  for (std::size_t i = 0; i < begun_.size(); ++i) workers_.emplace_back([this, i] { work(i); });
 }
 
 RequestScheduler::~RequestScheduler() {
@@ -30,13 +34,14 @@ RequestScheduler::~RequestScheduler() {
 }
 
 void RequestScheduler::submit(wire::Arrival arrival) {
-  bool stopping = false, begins = false, late = false, has_twin = false;
+  bool stopping = false, first = false, begins = false, late = false, has_twin = false;
   {
     const std::scoped_lock lock(mutex_);
     stopping = stopping_;
     if (!stopping && !sessions_.admit(arrival)) arrival.problem = Reason::rate_limit;
     if (!stopping && arrival.problem == Reason::none) {
       has_twin = sessions_.has_twin(arrival.from);
+      first = !sessions_.is_current(arrival.from);
       begins = sessions_.begins(arrival.from);
       late = sessions_.is_late(arrival.from, arrival.request.seq);
     }
@@ -52,6 +57,7 @@ void RequestScheduler::submit(wire::Arrival arrival) {
                    arrival.from.client_id, held_back(*held));
   if (late) return refuse(arrival, Reason::late, "a request as new as this was answered already");
   if (begins && backend_.forget) backend_.forget(arrival.from.client_id);
+  if (first && backend_.begin) backend_.begin(arrival.from.client_id, arrival.from.session);
 
   if (auto older = take_waiting(arrival.from.client_id)) {
     if (is_newer(*older, arrival)) std::swap(*older, arrival);  // they came in the wrong order
@@ -126,7 +132,8 @@ void RequestScheduler::tell(Stage stage, std::chrono::steady_clock::time_point s
     backend_.on_stage(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
 }
 
-void RequestScheduler::work() {
+void RequestScheduler::work(std::size_t worker) {
+  pthread_setname_np(pthread_self(), "worker");  // as `top -H` shows it
   std::unique_lock lock(mutex_);
   for (;;) {
     std::optional<Waiting> begun;
@@ -135,10 +142,12 @@ void RequestScheduler::work() {
       return begun || (stopping_ && queue_.empty());
     });
     if (!begun) return;
-    lock.unlock();
     const auto start = std::chrono::steady_clock::now();
+    begun_[worker] = start;
+    lock.unlock();
     work_on(begun->arrival);
     lock.lock();
+    begun_[worker].reset();
     queue_.end(*begun, std::chrono::steady_clock::now() - start);
     may_begin_.notify_all();
   }
@@ -156,6 +165,7 @@ void RequestScheduler::work_on(const wire::Arrival& arrival) {
                  held_back(*held));
     reply = refusal(arrival.request, Reason::not_found, fmt::format("internal error: {}", error.what()));
   }
+  if (backend_.on_located) backend_.on_located(arrival.from.client_id, arrival.from.session);
   tell(Stage::work, begun);
   bool is_current = false;
   {
@@ -228,6 +238,14 @@ void RequestScheduler::stop() {
     if (worker.joinable()) worker.join();
 }
 
+double RequestScheduler::longest_work_s() const {
+  const auto now = std::chrono::steady_clock::now();
+  double longest_s = 0;
+  for (const auto& begun : begun_)
+    if (begun) longest_s = std::max(longest_s, std::chrono::duration<double>(now - *begun).count());
+  return longest_s;
+}
+
 ServiceCounters RequestScheduler::counters() const {
   const std::scoped_lock lock(mutex_);
   return {answered_,
@@ -236,7 +254,8 @@ ServiceCounters RequestScheduler::counters() const {
           static_cast<std::uint32_t>(held_.size() + queue_.size()),
           sessions_.clients(SpotStatus::verified),
           sessions_.clients(SpotStatus::provisional),
-          sessions_.clients(SpotStatus::refused)};
+          sessions_.clients(SpotStatus::refused),
+          longest_work_s()};
 }
 
 }  // namespace liloc

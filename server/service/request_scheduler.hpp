@@ -22,6 +22,7 @@ struct ServiceCounters {
   std::uint32_t queued = 0;                               ///< waiting now, held ones included
   /// Clients by the localizer's last answer; those without one are in none.
   std::uint32_t clients_verified = 0, clients_provisional = 0, clients_refused = 0;
+  double longest_work_s = 0;  ///< of the requests in work now, since the first of them was begun
 };
 
 class RequestScheduler {
@@ -48,7 +49,8 @@ class RequestScheduler {
   [[nodiscard]] bool idle() const;
 
  private:
-  void work();
+  void work(std::size_t worker);
+  [[nodiscard]] double longest_work_s() const;
   void enqueue(wire::Arrival arrival);
   [[nodiscard]] bool must_wait(const wire::Arrival& arrival) const;
   [[nodiscard]] std::optional<wire::Arrival> take_waiting(const std::string& client_id);
@@ -68,6 +70,7 @@ class RequestScheduler {
   std::deque<wire::Arrival> held_;
   RequestQueue queue_;
   SourceLimit refusals_, failures_, twins_;  // lines of the log, by client (and reason)
+  std::vector<std::optional<std::chrono::steady_clock::time_point>> begun_;  ///< by worker, while it is at work
   bool stopping_ = false;
   std::atomic<std::uint64_t> answered_ = 0, verified_ = 0, refused_ = 0;
   std::vector<std::thread> workers_;

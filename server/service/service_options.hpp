@@ -29,6 +29,11 @@ enum class Stage : std::uint8_t { hold, wait, work };
 struct ServiceBackend {
   std::function<SpotReply(const SpotRequest&)> locate = {};
   std::function<void(const std::string& client_id)> forget = {};  ///< the client left or began anew
+  /// A run of a client asks here for the first time; after `forget`, before `locate`. On the dispatcher's
+  /// thread.
+  std::function<void(const std::string& client_id, std::uint64_t session)> begin = {};
+  /// `locate` has answered a request of this run; on the worker's thread, before the next of the client.
+  std::function<void(const std::string& client_id, std::uint64_t session)> on_located = {};
   /// What the ceiling's clock showed at a time, 0 where nobody knows; any thread. Empty: never known.
   std::function<StampNs(std::chrono::steady_clock::time_point)> ceiling_now = {};
   /// For metrics, from any of the service's threads: quick, and safe to call side by side. May be empty.

@@ -5,14 +5,18 @@
 namespace liloc::web {
 namespace {
 
-constexpr double kHung_s = 5;  // five beats missed
+constexpr double kHung_s = 5;         // five beats missed
+constexpr double kHungWorker_s = 10;  // five times what a search may take (ServerOptions::localizer)
 constexpr int kOk = 200, kUnavailable = 503;
 
 }  // namespace
 
 Page live_page(const ServerFacts& facts) {
-  if (facts.network_idle_s < kHung_s) return {kOk, "ok\n"};
-  return {kUnavailable, fmt::format("the network's thread has hung for {:.0f} s\n", facts.network_idle_s)};
+  if (facts.network_idle_s >= kHung_s)
+    return {kUnavailable, fmt::format("the network's thread has hung for {:.0f} s\n", facts.network_idle_s)};
+  if (facts.service.longest_work_s >= kHungWorker_s)
+    return {kUnavailable, fmt::format("a worker has hung for {:.0f} s\n", facts.service.longest_work_s)};
+  return {kOk, "ok\n"};
 }
 
 Page ready_page(const ServerFacts& facts) {

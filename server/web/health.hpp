@@ -4,7 +4,8 @@
 
 namespace liloc::web {
 
-/// Does the server live? 200, or 503 where its network thread has hung for 5 s: it is to be started anew.
+/// Does the server live? 200, or 503 where its network thread has hung for 5 s, or a worker over one request
+/// for 10 s: it is to be started anew.
 [[nodiscard]] Page live_page(const ServerFacts& facts);
 
 /// Can it answer devices? 200, or 503 and why not: no ceiling LiDAR is heard, or it does not live.

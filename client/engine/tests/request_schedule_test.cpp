@@ -91,6 +91,22 @@ TEST(RequestSchedule, AtOnceWhenThePlaceIsSureAgainButForTheLowerBound) {
   EXPECT_THAT(due_with_doubt(100, 1200), ElementsAre(0, 800, 1300));  // as usual meanwhile
 }
 
+TEST(RequestSchedule, AServerThatComesIsAskedAtOnceAndQuicklyUntilItVerifies) {
+  Exchange exchange{.status = SpotStatus::verified, .reason = Reason::confirmed};
+  exchange.before_frame = [](RequestSchedule& schedule, int at_ms) {
+    schedule.search_ended();
+    if (at_ms == 1100) schedule.server_found();
+  };
+  EXPECT_THAT(exchange.asks(3000), ElementsAre(0, 800, 1100, 1900, 2700));
+  exchange.status = SpotStatus::provisional;  // it has to look first
+  exchange.reason = Reason::awaiting_spots;
+  EXPECT_THAT(exchange.asks(1900), ElementsAre(0, 800, 1100, 1300, 1500, 1700, 1900));
+  exchange.before_frame = [](RequestSchedule& schedule, int at_ms) {
+    if (at_ms == 100) schedule.server_found();
+  };
+  EXPECT_THAT(exchange.asks(300), ElementsAre(0, 200)) << "not under the lower bound";
+}
+
 TEST(RequestSchedule, RoundedStampsDoNotMissTheInterval) {
   RequestSchedule schedule(kOptions);
   EXPECT_TRUE(schedule.due(1'000'000'256, true));

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <future>
+#include <mutex>
 #include <thread>
 
 #include "client/engine/tests/walker.hpp"
@@ -291,6 +292,75 @@ TEST(SessionReplies, WhatNobodyAskedForChangesNothing) {
   EXPECT_EQ(stats.replies, static_cast<std::uint64_t>(device.answered)) << "the server was left";
   ASSERT_TRUE(device.session->newest_frame()->T_map_sensor);
   EXPECT_NEAR(device.session->newest_frame()->T_map_sensor->translation().x(), 7, 1);
+}
+
+/// A device that asks two servers, of which the first ends.
+TEST(SessionReplies, WhatTheStandbyVerifiedCountsOnceTheFollowedServerIsLate) {
+  std::mutex mutex;
+  std::vector<SpotRequest> asked;
+  SessionCallbacks callbacks;
+  callbacks.send = [&](const SpotRequest& request) {
+    const std::scoped_lock lock(mutex);
+    asked.push_back(request);
+    return Status{};
+  };
+  auto session = Session::create(options(), callbacks);
+  ASSERT_TRUE(session);
+  const auto room = scene::furnished_room(1);
+  int frame = 0;
+  const auto next_request = [&](std::size_t count) {
+    return within(20s, [&] {
+      EXPECT_TRUE((*session)->push_depth(frame_at(room, frame++)));
+      std::this_thread::sleep_for(5ms);
+      const std::scoped_lock lock(mutex);
+      return asked.size() >= count;
+    });
+  };
+  const auto reply = [&](std::size_t index, const char* server) {
+    const std::scoped_lock lock(mutex);
+    SpotReply r;
+    r.server_id = server;
+    r.seq = asked[index].seq;
+    r.stamp_ns = asked[index].stamp_ns;
+    r.odom_segment = asked[index].odom_segment;
+    r.status = SpotStatus::verified;
+    r.T_map_odom = Pose(Eigen::Translation3d(7, 8, 9));
+    return r;
+  };
+  ASSERT_TRUE(next_request(1));
+  EXPECT_TRUE(within(20s, [&] { return (*session)->unanswered(); }));
+  EXPECT_TRUE((*session)->add_reply(reply(0, "edge1")));
+  EXPECT_FALSE((*session)->unanswered());
+  ASSERT_TRUE(next_request(2));
+  EXPECT_FALSE((*session)->add_reply(reply(1, "edge2")));
+  std::optional<SpotReply> overdue;
+  ASSERT_TRUE(within(20s, [&] { return (overdue = (*session)->add_overdue_reply()).has_value(); }));
+  EXPECT_EQ(overdue->server_id, "edge2");
+  EXPECT_EQ((*session)->stats().replies_verified, 2U);
+  EXPECT_FALSE((*session)->add_overdue_reply());
+}
+
+TEST(SessionReplies, AServerThatIsFoundIsAskedAtOnce) {
+  std::atomic<int> asked = 0;
+  SessionCallbacks callbacks;
+  callbacks.send = [&](const SpotRequest&) {
+    ++asked;
+    return Status{};
+  };
+  SessionOptions o = options();
+  o.engine.interval_ns = from_ms(60'000);
+  o.engine.searching_interval_ns = from_ms(1);
+  auto session = Session::create(o, callbacks);
+  ASSERT_TRUE(session);
+  const auto room = scene::furnished_room(1);
+  ASSERT_TRUE((*session)->push_depth(frame_at(room, 0)));
+  ASSERT_TRUE(within(20s, [&] { return asked == 1; }));
+  ASSERT_TRUE((*session)->push_depth(frame_at(room, 1)));
+  ASSERT_TRUE(within(20s, [&] { return (*session)->stats().frames == 2; }));
+  EXPECT_EQ(asked, 1);
+  (*session)->server_found();
+  ASSERT_TRUE((*session)->push_depth(frame_at(room, 2)));
+  EXPECT_TRUE(within(20s, [&] { return asked == 2; }));
 }
 
 TEST(SessionReplies, AnotherDeviceOfTheSameIdIsToldWhileItAsks) {

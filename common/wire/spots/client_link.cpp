@@ -1,9 +1,11 @@
 #include "common/wire/spots/client_link.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <random>
 
 #include "common/base/ids.hpp"
+#include "common/base/log.hpp"
 #include "common/wire/dds/topics.hpp"
 #include "common/wire/dds/typed.hpp"
 #include "common/wire/spots/convert_spot.hpp"
@@ -14,16 +16,22 @@ namespace liloc::wire {
 struct ClientLink::Impl {
   void take_reply(const liloc_msg_SpotReply& message);
   void report_match();
-  [[nodiscard]] bool matched() const;
+  /// Servers that are matched in both directions: now, and since the start.
+  struct Matches {
+    std::uint32_t current = 0, total = 0;
+  };
+  [[nodiscard]] Matches matches() const;
 
   std::string client_id;
   std::uint64_t session = 0;
   ClientCallbacks callbacks;
   std::atomic<bool> closed = false;
-  bool reported = false;  // of the dispatcher's thread, as is the next
+  bool reported = false;    // of the dispatcher's thread, as are the next two
+  std::uint32_t found = 0;  // servers so far, counted by both directions
   Namesake namesake;
   Entity publisher, subscriber, writer;
-  std::int32_t reader = 0;  // the dispatcher owns it
+  std::int32_t reader = 0, participant = 0;  // the dispatcher owns the reader
+  std::atomic<std::uint32_t> announced = 0;
 };
 
 namespace {
@@ -35,18 +43,24 @@ std::uint64_t random_session() {
 
 }  // namespace
 
-bool ClientLink::Impl::matched() const {
+ClientLink::Impl::Matches ClientLink::Impl::matches() const {
   dds_publication_matched_status_t readers{};
   dds_subscription_matched_status_t writers{};
-  return dds_get_publication_matched_status(writer.handle(), &readers) == DDS_RETCODE_OK &&
-         dds_get_subscription_matched_status(reader, &writers) == DDS_RETCODE_OK && readers.current_count > 0 &&
-         writers.current_count > 0;
+  if (dds_get_publication_matched_status(writer.handle(), &readers) != DDS_RETCODE_OK ||
+      dds_get_subscription_matched_status(reader, &writers) != DDS_RETCODE_OK)
+    return {};
+  return {std::min(readers.current_count, writers.current_count),
+          std::min(readers.total_count, writers.total_count)};
 }
 
 void ClientLink::Impl::report_match() {
-  const bool now = matched();  // reading the status also resets it
-  if (now == std::exchange(reported, now) || closed) return;
-  if (callbacks.on_server) callbacks.on_server(now);
+  const Matches now = matches();  // reading the status also resets it
+  const bool there = now.current > 0;
+  const bool changed = there != std::exchange(reported, there);
+  const bool more = now.total > std::exchange(found, now.total);
+  if (closed) return;
+  if (changed && callbacks.on_server) callbacks.on_server(there);
+  if (more && callbacks.on_server_found) callbacks.on_server_found();
 }
 
 void ClientLink::Impl::take_reply(const liloc_msg_SpotReply& message) {
@@ -71,12 +85,13 @@ ClientLink::~ClientLink() {
 }
 
 Result<std::unique_ptr<ClientLink>> ClientLink::create(Dispatcher& dispatcher, const std::string& client_id,
-                                                       ClientCallbacks callbacks) {
+                                                       ClientCallbacks callbacks, std::uint64_t session) {
   const auto id = valid_id(client_id, "client_id");
   if (!id) return tl::unexpected(id.error());
   auto impl = std::make_shared<Impl>();
   impl->client_id = *id;
-  impl->session = random_session();
+  impl->participant = dispatcher.participant().handle();
+  impl->session = session != 0 ? session : random_session();
   impl->callbacks = std::move(callbacks);
   const auto participant = dispatcher.participant().handle();
   const Qos partition = partition_qos(client_partition(*id));
@@ -114,8 +129,21 @@ Result<std::unique_ptr<ClientLink>> ClientLink::create(Dispatcher& dispatcher, c
   return std::unique_ptr<ClientLink>(new ClientLink(std::move(impl)));
 }
 
+std::uint64_t ClientLink::session() const {
+  return impl_->session;
+}
+
 bool ClientLink::server_matched() const {
-  return impl_->matched();
+  return impl_->matches().current > 0;
+}
+
+void ClientLink::announce() {
+  // What of a participant's QoS may change is its user data, and a change is told to all peers at once.
+  const std::uint32_t count = ++impl_->announced;
+  const Qos qos = make_qos();
+  dds_qset_userdata(qos.get(), &count, sizeof count);
+  if (const Status told = check(dds_set_qos(impl_->participant, qos.get()), "announcement"); !told)
+    log::debug("{}", told.error().message);
 }
 
 Status ClientLink::send(const SpotRequest& request) {

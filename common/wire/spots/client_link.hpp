@@ -17,6 +17,7 @@ namespace liloc::wire {
 struct ClientCallbacks {
   std::function<void(SpotReply)> on_reply = {};        ///< to a request of this run of the client
   std::function<void(bool matched)> on_server = {};    ///< the server came or went
+  std::function<void()> on_server_found = {};          ///< one more: the first, another, or one that began anew
   std::function<void(std::string)> on_bad_reply = {};  ///< a reply that was dropped, and why
   std::function<void()> on_namesake = {};  ///< another device asks under this id; at each answer to it
 };
@@ -24,9 +25,11 @@ struct ClientCallbacks {
 class ClientLink {
  public:
   /// Before the dispatcher starts; the dispatcher must outlive the link's last `send`. Error: not a valid id.
+  /// `session`: of an earlier link of this run of the client, so that the server takes both for one; 0: drawn.
   [[nodiscard]] static Result<std::unique_ptr<ClientLink>> create(Dispatcher& dispatcher,
                                                                   const std::string& client_id,
-                                                                  ClientCallbacks callbacks);
+                                                                  ClientCallbacks callbacks,
+                                                                  std::uint64_t session = 0);
   ~ClientLink();
   ClientLink(const ClientLink&) = delete;
   ClientLink& operator=(const ClientLink&) = delete;
@@ -35,6 +38,10 @@ class ClientLink {
   /// request goes nowhere, and that is an error; so is a request that cannot travel (over 256 poses, 256 KiB of
   /// cloud). Any thread.
   [[nodiscard]] Status send(const SpotRequest& request);
+  [[nodiscard]] std::uint64_t session() const;
+  /// Tells the servers' hosts that this client is here, ahead of the time when it would tell them anyway: a
+  /// server that was started anew finds its clients by that. Any thread.
+  void announce();
   /// Both directions are matched, so that nothing sent now is lost for want of discovery. Any thread.
   [[nodiscard]] bool server_matched() const;
 

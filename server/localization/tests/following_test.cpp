@@ -77,5 +77,18 @@ TEST(Following, ASearchThatComesElsewhereSpeaksAgainstIt) {
   EXPECT_NEAR(followed.log_odds, 8, 1e-12);
 }
 
+TEST(Unwatched, IsLessSureOfThePlaceAndOfThePose) {
+  PoseEstimate estimate;
+  estimate.covariance = 1e-6 * Matrix6d::Identity();
+  const Followed before = begun(estimate, Pose::Identity(), 7, {});
+  const Followed after = unwatched(before, 10, radians(0.2), 0.008);
+  EXPECT_LT(after.log_odds, before.log_odds);
+  EXPECT_GT(probability_of(after.log_odds), 0.997) << "a break of the odometry is rare";
+  EXPECT_NEAR(after.estimate.sd_m(), 0.08, 0.002);
+  EXPECT_NEAR(degrees(after.estimate.sd_rad()), 2, 0.1);
+  EXPECT_TRUE(after.estimate.T_map_sensor.isApprox(before.estimate.T_map_sensor));
+  EXPECT_LT(unwatched(before, 100, 0, 0).log_odds, after.log_odds);
+}
+
 }  // namespace
 }  // namespace liloc

@@ -48,6 +48,40 @@ TEST_P(LocalizerLaw, AColdRequestIsAnsweredOnItsOwn) {
   EXPECT_TRUE((*first.T_map_odom * request.T_odom_sensor).isApprox(*first.T_map_sensor, 1e-9));
 }
 
+TEST_P(LocalizerLaw, WhatWasRememberedIsGoneOnWithByAnotherServer) {
+  World before(GetParam()), after(GetParam());
+  EXPECT_FALSE(before.localizer->remembered("robot"));
+  SpotReply last;
+  int k = 0;
+  for (; k < 6 && !last.verified(); ++k) last = before.ask(k);
+  ASSERT_TRUE(last.verified());
+  const auto remembered = before.localizer->remembered("robot");
+  ASSERT_TRUE(remembered);
+  after.localizer->resume("robot", *remembered, 0.8);
+  const SpotReply reply = after.ask(k);
+  EXPECT_EQ(reply.reason, Reason::confirmed) << reply.text;
+  ASSERT_TRUE(reply.T_map_sensor);
+  EXPECT_TRUE(near(*reply.T_map_sensor, after.truth(k)));
+}
+
+TEST_P(LocalizerLaw, WhatIsRememberedOfAnotherPlaceIsNotBelieved) {
+  World before(GetParam()), after(GetParam());
+  SpotReply last;
+  int k = 0;
+  for (; k < 6 && !last.verified(); ++k) last = before.ask(k);
+  ASSERT_TRUE(last.verified());
+  auto remembered = before.localizer->remembered("robot");
+  ASSERT_TRUE(remembered);
+  remembered->followed.estimate.T_map_sensor.translation().x() += 1.5;
+  after.localizer->resume("robot", *remembered, 0.8);
+  for (const int end = k + 4; k < end; ++k) {
+    const SpotReply reply = after.ask(k);
+    if (reply.verified()) {
+      EXPECT_TRUE(near(*reply.T_map_sensor, after.truth(k))) << "spot " << k;
+    }
+  }
+}
+
 TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {
   World world(GetParam());
   for (int k = 0; k < 5; ++k) (void)world.ask(k);

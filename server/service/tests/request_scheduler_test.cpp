@@ -4,6 +4,9 @@
 
 #include <atomic>
 #include <map>
+#include <mutex>
+#include <string>
+#include <vector>
 
 #include "server/service/tests/answers.hpp"
 
@@ -88,6 +91,47 @@ TEST(RequestScheduler, TellsEachAnswerHowLongItTookWhereAndHowClientsStand) {
   EXPECT_EQ(scheduler.counters().clients_verified, 1U);
   EXPECT_EQ(scheduler.counters().clients_refused, 1U);
   EXPECT_EQ(scheduler.counters().clients_provisional, 0U);
+}
+
+TEST(RequestScheduler, TellsWhichRunOfAClientBeginsAndWhoseRequestWasLocated) {
+  std::mutex mutex;
+  std::vector<std::string> told;
+  const auto say = [&](const std::string& what, const std::string& client, std::uint64_t session) {
+    const std::scoped_lock lock(mutex);
+    told.push_back(what + " " + client + " " + std::to_string(session));
+  };
+  Answers answers;
+  ServiceBackend backend{.locate = verified};
+  backend.forget = [&](const std::string& client) { say("forget", client, 0); };
+  backend.begin = [&](const std::string& client, std::uint64_t session) { say("begin", client, session); };
+  backend.on_located = [&](const std::string& client, std::uint64_t session) {
+    say("located", client, session);
+  };
+  RequestScheduler scheduler({}, backend, answers.sink());
+  scheduler.submit(arrival("a", 1, 5));
+  ASSERT_TRUE(answers.wait_for(1));
+  scheduler.submit(arrival("a", 2, 5));
+  ASSERT_TRUE(answers.wait_for(2));
+  scheduler.submit(arrival("a", 3, 6));
+  ASSERT_TRUE(answers.wait_for(3));
+  const std::scoped_lock lock(mutex);
+  EXPECT_EQ(told, (std::vector<std::string>{"begin a 5", "located a 5", "located a 5", "forget a 0",
+                                            "begin a 6", "located a 6"}));
+}
+
+TEST(RequestScheduler, TellsHowLongAWorkerHasBeenOverOneRequest) {
+  Gate gate;
+  Answers answers;
+  RequestScheduler scheduler({.workers = 2}, {.locate = [&](const SpotRequest& r) { return gate.pass(r); }},
+                             answers.sink());
+  EXPECT_EQ(scheduler.counters().longest_work_s, 0);
+  scheduler.submit(arrival("a", 1));
+  gate.wait_inside();
+  std::this_thread::sleep_for(30ms);
+  EXPECT_GE(scheduler.counters().longest_work_s, 0.03);
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(1));
+  while (scheduler.counters().longest_work_s > 0) std::this_thread::sleep_for(1ms);
 }
 
 TEST(RequestScheduler, AProblemSeenOnTheWayIsPassedOn) {

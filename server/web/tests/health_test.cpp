@@ -35,5 +35,15 @@ TEST(Health, AHungNetworkIsNeitherLiveNorReady) {
   EXPECT_NE(ready_page(facts).body.find("hung for 7 s"), std::string::npos);
 }
 
+TEST(Health, AHungWorkerIsNeitherLiveNorReady) {
+  ServerFacts facts = with(wire::LidarState::ok);
+  facts.service.longest_work_s = 3;  // a search that is cut off
+  EXPECT_EQ(live_page(facts).status, 200);
+  facts.service.longest_work_s = 12;
+  EXPECT_EQ(live_page(facts).status, 503);
+  EXPECT_EQ(ready_page(facts).status, 503);
+  EXPECT_NE(live_page(facts).body.find("worker has hung for 12 s"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace liloc::web

@@ -41,6 +41,22 @@ TEST(Profile, LargeDatagramsAreForLoopbackAlone) {
   EXPECT_TRUE(has(*profile_xml({.interface = "auto"}), R"(autodetermine="true")"));
 }
 
+TEST(Profile, ADevicesDatagramsFitAFrameOfEthernet) {
+  EXPECT_TRUE(has(*profile_xml({.interface = "wlan0"}), "<MaxMessageSize>1472B<"));
+  EXPECT_FALSE(has(*profile_xml({.role = Role::server, .interface = "eth0"}), "MaxMessageSize"));
+  EXPECT_FALSE(has(*profile_xml({.role = Role::source, .interface = "eth0"}), "MaxMessageSize"));
+}
+
+TEST(Profile, ADeviceThatRoamsCanEndItsParticipant) {
+  EXPECT_TRUE(has(*profile_xml({}), "<MultipleReceiveThreads>false<"));
+  EXPECT_FALSE(has(*profile_xml({.role = Role::server}), "MultipleReceiveThreads"));
+}
+
+TEST(Profile, SourcesTellThatTheyAreThereMoreOften) {
+  EXPECT_TRUE(has(*profile_xml({}), "<SPDPInterval>1s<"));
+  EXPECT_TRUE(has(*profile_xml({.role = Role::source}), "<SPDPInterval>200ms<"));
+}
+
 TEST(Profile, WhatIsNoNameOrAddressIsRefused) {
   EXPECT_FALSE(profile_xml({.domain = -1}));
   EXPECT_FALSE(profile_xml({.domain = 231}));

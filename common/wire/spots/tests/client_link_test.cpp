@@ -108,6 +108,24 @@ TEST(ClientLink, TwoDevicesOfOneIdAreToldToBoth) {
   dispatcher->stop();
 }
 
+TEST(ClientLink, AServerThatBeganAnewIsFoundAgain) {
+  Client client(107, "robot1");
+  for (const int times : {1, 2}) {
+    const Server server(107);
+    EXPECT_TRUE(eventually([&] { return client.found == times; }));
+  }
+}
+
+TEST(ClientLink, AnAnnouncementChangesNothingElse) {
+  Server server(107);
+  Client client(107, "robot1");
+  ASSERT_TRUE(eventually([&] { return client.found == 1; }));
+  for (int i = 0; i < 20; ++i) client.link->announce();
+  ASSERT_TRUE(client.link->send(sample_request("robot1")));
+  EXPECT_TRUE(server.arrivals.take());
+  EXPECT_EQ(client.found, 1);
+}
+
 TEST(ClientLink, RequestsThatCannotTravelAreRefusedByTheSender) {
   Server server(110);
   Client client(110, "robot1");

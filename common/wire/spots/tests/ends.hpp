@@ -79,6 +79,7 @@ struct Client {
         link(ClientLink::create(*dispatcher, id,
                                 {.on_reply = [this](SpotReply r) { replies.put(std::move(r)); },
                                  .on_server = [this](bool matched) { server.put(matched); },
+                                 .on_server_found = [this] { ++found; },
                                  .on_bad_reply = {}})
                  .value()) {
     dispatcher->start();
@@ -87,6 +88,7 @@ struct Client {
 
   Inbox<SpotReply> replies;
   Inbox<bool> server;
+  std::atomic<int> found = 0;
   Participant seat;
   std::unique_ptr<Dispatcher> dispatcher;
   std::unique_ptr<ClientLink> link;

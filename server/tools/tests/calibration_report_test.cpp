@@ -21,7 +21,7 @@ constexpr const char* kSite =
 /// The second is not trusted.
 std::vector<survey::CalibratedLidar> two_results() {
   std::vector<survey::CalibratedLidar> results(2);
-  results[0].T_map_sensor.translation() = {0.5, -0.25, 2.75};
+  results[0].T_map_sensor.translation() = Eigen::Vector3d(0.5, -0.25, 2.75);
   results[0].moved_m = 0.25;
   results[0].evidence.residual_m = 0.004;
   results[1].moved_rad = radians(2.0);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto-tests/sim/random.hpp"
+#include "proto-tests/sim/base/random.hpp"
 
 namespace liloc::soak {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "proto-tests/sim/random.hpp"
+#include "proto-tests/sim/base/random.hpp"
 
 namespace liloc::soak {
 namespace {

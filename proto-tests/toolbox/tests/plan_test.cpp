@@ -135,7 +135,7 @@ TEST_F(Plan, AScanInMillimetresIsNamed) {
 }
 
 TEST_F(Plan, AFolderThatHoldsAnythingIsLeftAlone) {
-  written("out/mine.txt", "mine");
+  (void)written("out/mine.txt", "mine");
   expect_complaint(liloc("plan " + scan() + "--lidars 1 --out " + path("out")), 2, "--out");
   EXPECT_TRUE(fs::exists(path("out/mine.txt")));
   EXPECT_FALSE(fs::exists(path("out/plan.json")));

@@ -218,7 +218,7 @@ def main():
         print(f"train: {error}; run deploy/install --torch", file=sys.stderr)
         return 1
     except (OSError, ValueError, KeyError) as error:
-        print(f"train: no usable recording: {error!r}", file=sys.stderr)
+        print(f"train: no usable recording: {type(error).__name__}: {error}", file=sys.stderr)
         return 2
     try:
         return trainer.run()

@@ -6,6 +6,8 @@ namespace liloc {
 
 namespace {
 
+constexpr float kApart_m = 0.05F;  // along the normal; 95 % of false ones are nearer, DECISIONS.md
+
 /// `normals`: of as many points; not read unless kNormals.
 template <bool kNormals>
 [[gnu::always_inline]] inline void look(const Pinhole& camera, const DepthBand* bands, const PointRun& points,
@@ -34,7 +36,7 @@ template <bool kNormals>
                   mz = c.R[2] * nx[i] + c.R[5] * ny[i] + c.R[8] * nz[i];
       const float along = mx * px + my * py + mz * pz;
       const float gap = (edge - pz) * (along < 0 ? -along : along);  // times pz, along the normal
-      through = through & ((gap > tolerance_m * pz) | (mx * mx + my * my + mz * mz < 0.5F));
+      through = through & ((gap > kApart_m * pz) | (mx * mx + my * my + mz * mz < 0.5F));
     }
     const bool on =
         ((pz >= near - 2 * slack) & (pz <= near + slack)) | ((pz >= far - slack) & (pz <= far + slack));

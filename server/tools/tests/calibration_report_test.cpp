@@ -81,8 +81,8 @@ TEST(CalibrationReport, ASiteThatChangedMeanwhileOrCannotBeWrittenIsTold) {
     EXPECT_FALSE(std::filesystem::exists(out));
   }
   EXPECT_FALSE(write_calibrated(folder.path() / "none.json", out, two_results()));
-  EXPECT_FALSE(
-      write_calibrated(folder.put("site.json", kSite), folder.path() / "no/such/out.json", two_results()));
+  const auto site = folder.put("site.json", kSite);
+  EXPECT_FALSE(write_calibrated(site, site / "out.json", two_results())) << "a file is no folder";
 }
 
 }  // namespace

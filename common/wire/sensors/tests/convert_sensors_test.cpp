@@ -94,6 +94,8 @@ TEST(ConvertCameraInfo, RoundTripAndHostileFields) {
   EXPECT_EQ(back->cx, 159.5);
   auto zero = message;
   zero.k[0] = 0;
+  EXPECT_TRUE(from_wire(zero)) << "p counts where it is set";
+  zero.p[0] = 0;
   expect_refused(zero, "camera_info");
   auto skewed = message;
   std::ranges::fill(skewed.p, 0);

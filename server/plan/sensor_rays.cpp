@@ -50,7 +50,7 @@ std::vector<Surface> SensorRays::seen(const VoxelRoom& room, const Pose& T_map_s
     if (hit && -room.normal_map(hit->surface).dot(direction) >= kGrazing) surfaces.push_back(hit->surface);
   }
   std::ranges::sort(surfaces);
-  surfaces.erase(std::ranges::unique(surfaces).begin(), surfaces.end());
+  surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
   return surfaces;
 }
 

@@ -1,6 +1,6 @@
-#include "client/inertial/imu_agreement.hpp"
-
 #include <gtest/gtest.h>
+
+#include "client/inertial/imu_agreement.hpp"
 
 namespace liloc {
 namespace {

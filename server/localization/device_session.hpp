@@ -37,6 +37,10 @@ class DeviceSession {
   Evidence answer(const std::shared_ptr<const Spot>& spot, bool spare_time, SpotReply* reply);
   /// A pose that is followed; none while it searches.
   [[nodiscard]] std::optional<Remembered> remembered() const;
+  /// Forgets the clouds of earlier spots, which hold their rooms; a pose that is followed goes on.
+  void forget_spots() {
+    if (segment_) segment_->tracks.clear();
+  }
   /// What it remembers; the next answer rests on it.
   [[nodiscard]] const std::optional<Segment>& segment() const { return segment_; }
 

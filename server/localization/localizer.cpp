@@ -17,8 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Sessions of clients that left hold their last clouds, up to some megabytes each. By hand, as how long they
-// may be of use: devices are carried on by odometry for about a minute before they count as lost.
+// Sessions of clients that left hold their poses and last views, not the rooms that they looked at. By hand, as
+// how long they may be of use: devices are carried on by odometry for about a minute before they count as lost.
 constexpr std::size_t kMostParked = 16;
 constexpr auto kParkedFor = std::chrono::seconds(60);
 
@@ -49,16 +49,21 @@ struct Localizer::Impl {
     return held;
   }
 
-  /// The caller locks.
-  void park(const std::string& client_id) {
+  /// The session, if there is one, whose spots are to be forgotten without this lock.
+  std::shared_ptr<DeviceSession> park(const std::string& client_id) {
+    const std::scoped_lock lock(mutex);
+    last_learned.erase(client_id);
+    troubled.erase(client_id);
     const auto now = Clock::now();
     std::erase_if(parked, [&](const auto& entry) { return now - entry.second.since > kParkedFor; });
     const auto found = sessions.find(client_id);
-    if (found == sessions.end()) return;
-    parked[client_id] = {std::move(found->second), now};
+    if (found == sessions.end()) return nullptr;
+    const auto left = found->second;
+    parked[client_id] = {left, now};
     sessions.erase(found);
-    if (parked.size() <= kMostParked) return;
-    parked.erase(std::ranges::min_element(parked, {}, [](const auto& entry) { return entry.second.since; }));
+    if (parked.size() > kMostParked)
+      parked.erase(std::ranges::min_element(parked, {}, [](const auto& entry) { return entry.second.since; }));
+    return left;
   }
 
   Result<std::shared_ptr<const Snapshot>> snapshot(StampNs stamp_ns) {
@@ -156,10 +161,10 @@ SpotReply Localizer::locate(const SpotRequest& request) {
 }
 
 void Localizer::forget(const std::string& client_id) {
-  const std::scoped_lock lock(impl_->mutex);
-  impl_->park(client_id);
-  impl_->last_learned.erase(client_id);
-  impl_->troubled.erase(client_id);
+  const auto left = impl_->park(client_id);
+  if (!left) return;
+  const std::scoped_lock in_turn(left->mutex);
+  left->forget_spots();
 }
 
 std::optional<Remembered> Localizer::remembered(const std::string& client_id) const {
@@ -179,7 +184,7 @@ void Localizer::resume(const std::string& client_id, const Remembered& remembere
   DeviceSession::Segment segment{remembered.odom_segment, Tracks(verify.tracks)};
   segment.followed = unwatched(remembered.followed, spots, verify.step_sd_rad, verify.step_sd_m);
   const std::scoped_lock lock(impl_->mutex);
-  if (const auto whole = impl_->parked.extract(client_id)) {  // with all that it saw, which nobody else has
+  if (const auto whole = impl_->parked.extract(client_id)) {  // with what it saw of who moves
     impl_->sessions[client_id] = whole.mapped().session;
     return;
   }

@@ -55,8 +55,6 @@ COVERED = {
         "whole answer files, damaged ones among them"),
     "server/answers/room_tables.hpp": ("server/answers/tests/answer_file_test.cpp",
         "the tables of an answer file"),
-    "server/global_cloud/snapshot.hpp": ("server/global_cloud/tests/global_cloud_test.cpp",
-        "made by the cloud alone"),
     "server/localization/device_session.hpp": ("server/localization/tests/localizer_test.cpp",
         "a localizer is its sessions"),
     "server/localization/spot_solver.hpp": ("server/localization/tests/bad_input_test.cpp",

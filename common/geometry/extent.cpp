@@ -1,7 +1,10 @@
 #include "common/geometry/extent.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
+
+#include "common/base/quantile.hpp"
 
 namespace liloc {
 
@@ -12,9 +15,8 @@ double extent_m(const Cloud& cloud) {
     for (const Eigen::Vector3f& p : cloud.points)
       if (p.allFinite()) values.push_back(p[axis]);
     if (values.empty()) return 0;
-    std::ranges::sort(values);
-    const std::size_t cut = values.size() / 50;
-    longest = std::max(longest, static_cast<double>(values[values.size() - 1 - cut] - values[cut]));
+    const double high = quantile(values, 0.98);
+    longest = std::max(longest, high - quantile(std::move(values), 0.02));
   }
   return longest;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <utility>
 
 #include "common/base/quantile.hpp"
 #include "common/geometry/regions.hpp"
@@ -12,8 +14,9 @@ namespace {
 constexpr double kReach_m = 10;  // of a LiDAR, sideways
 // A box of these walls takes some gigabyte; over twice what 64 LiDARs, as many as a status holds, can cover.
 constexpr double kLargest_m2 = 10'000;
-constexpr double kFarthest_m = 1000;  // a float of the map tells 0.1 mm there; no site is wider than 2 km
-constexpr double kHighest_m = 100;    // above each other: a high building
+constexpr double kFarthest_m = 1000;      // no site is wider than 2 km
+constexpr double kFromOrigin_m = 16'000;  // floats of the map are 1 mm apart there
+constexpr double kHighest_m = 100;        // above each other: a high building
 
 struct Outlier {
   std::size_t index = 0;
@@ -49,9 +52,27 @@ Status check_rise(const std::string& file, const std::vector<GlobalLidar>& lidar
   const auto [lowest, highest] = std::ranges::minmax_element(lidars, {}, height_m);
   const double rise_m = height_m(*highest) - height_m(*lowest);
   if (rise_m <= kHighest_m) return {};
-  return refused(file, static_cast<std::size_t>(highest - lidars.begin()),
-                 fmt::format("{} hangs {:.0f} m above {}, must be at most {:.0f} m", highest->id, rise_m,
-                             lowest->id, kHighest_m));
+  std::vector<double> heights;
+  std::ranges::transform(lidars, std::back_inserter(heights), height_m);
+  const double middle_m = quantile(std::move(heights), 0.49);
+  const bool too_high = height_m(*highest) - middle_m >= middle_m - height_m(*lowest);
+  const auto off = too_high ? highest : lowest, other = too_high ? lowest : highest;
+  return refused(file, static_cast<std::size_t>(off - lidars.begin()),
+                 fmt::format("{} hangs {:.0f} m {} {}, must be at most {:.0f} m", off->id, rise_m,
+                             too_high ? "above" : "below", other->id, kHighest_m));
+}
+
+/// The map is kept in floats.
+Status check_origin(const std::string& file, const std::vector<GlobalLidar>& lidars) {
+  for (std::size_t i = 0; i < lidars.size(); ++i) {
+    const double away_m = lidars[i].T_map_sensor.translation().cwiseAbs().maxCoeff();
+    if (away_m > kFromOrigin_m)
+      return fail(
+          "{}: global_lidars[{}].T_map_sensor.translation: {} hangs {:.0f} m from the map's origin, must be at "
+          "most {:.0f} m: give metres, or subtract a common offset",
+          file, i, lidars[i].id, away_m, kFromOrigin_m);
+  }
+  return {};
 }
 
 /// Rooms that lie far apart have grids of their own.
@@ -84,6 +105,7 @@ Status check_extent(const std::string& file, const std::vector<GlobalLidar>& lid
                    fmt::format("{} hangs {:.0f} m from the middle one, must be at most {:.0f} m",
                                lidars[far.index].id, far.away_m, kFarthest_m));
   if (const Status rise = check_rise(file, lidars); !rise) return rise;
+  if (const Status origin = check_origin(file, lidars); !origin) return origin;
   return check_rooms(file, lidars);
 }
 

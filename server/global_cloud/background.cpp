@@ -155,7 +155,8 @@ bool Background::in_company(std::size_t i, const Alike& alike) const {
 bool Background::gone(std::size_t i, float units) const {
   const Pixel& pixel = pixels_[i];
   if (pixel.shown == 0) return false;
-  if (units > 0) return units > pixel.shown && units - pixel.shown > tolerance_of(units);
+  const float farther = units - pixel.shown;
+  if (units > 0) return farther > 0.01F * units && farther > tolerance_of(units);  // 1 % of it at least
   return pixel.surface == 0 || surprisal_of_missing(pixel) >= static_cast<float>(options_.forget_surprisal);
 }
 
@@ -172,6 +173,7 @@ Layers Background::separated(const DepthImage& image) const {
     layers.moving.units[i] = image.units[i];
     for_each_around(i, [&](std::size_t j) { layers.still.units[j] = 0; });
   }
+  if (std::ranges::none_of(layers.gone.units, [](std::uint16_t units) { return units > 0; })) layers.gone = {};
   return layers;
 }
 

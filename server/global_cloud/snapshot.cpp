@@ -13,6 +13,18 @@ namespace {
 
 constexpr double kMovingVoxel_m = 0.15, kGoneVoxel_m = 0.05;  // by hand
 
+// Of the depth: means that differ by more are not the same surface; by hand, by far over what they tremble.
+constexpr float kOtherSurface = 0.03F;
+
+Cloud thinned_map(const DepthImage& image, const GlobalLidar& lidar, const DepthOptions& depth,
+                  double voxel_m) {
+  if (image.units.empty()) return {};
+  const auto cloud_sensor = depth_to_cloud(image, lidar.camera, depth);
+  if (cloud_sensor) return transformed(lidar.T_map_sensor, voxel_downsample(*cloud_sensor, voxel_m));
+  log::error("{}: {}", lidar.id, cloud_sensor.error().message);
+  return {};
+}
+
 SightView view_of(const DepthImage& image, const GlobalLidar& lidar, const SnapshotOptions& options) {
   return SightView::from_depth(image, lidar.camera, lidar.T_map_sensor.inverse(), options.view_factor,
                                options.depth.max_range_m);
@@ -34,6 +46,15 @@ const Cloud& LidarSurfaces::cloud_map() const {
   return cloud_map_;
 }
 
+Cloud LidarSurfaces::missing_of(const LidarSurfaces& before) const {
+  DepthImage missing = before.image_;
+  for (std::size_t i = 0; i < missing.units.size(); ++i) {
+    const float was = missing.units[i], is = image_.units[i];
+    if (is > 0 && is - was <= kOtherSurface * was) missing.units[i] = 0;
+  }
+  return thinned_map(missing, lidar_, options_.depth, kGoneVoxel_m);
+}
+
 SightView LidarSurfaces::view() const {
   return view_of(image_, lidar_, options_);
 }
@@ -47,21 +68,15 @@ const SightView& LidarFrame::view() const {
   return view_;
 }
 
-Cloud LidarFrame::thinned(const DepthImage& image, double voxel_m) const {
-  if (image.units.empty()) return {};
-  const auto cloud_sensor = depth_to_cloud(image, lidar_.camera, options_.depth);
-  if (cloud_sensor) return transformed(lidar_.T_map_sensor, voxel_downsample(*cloud_sensor, voxel_m));
-  log::error("{}: {}", lidar_.id, cloud_sensor.error().message);
-  return {};
-}
-
 const Cloud& LidarFrame::moving_map() const {
-  std::call_once(moving_once_, [this] { moving_map_ = thinned(layers_.moving, kMovingVoxel_m); });
+  std::call_once(moving_once_,
+                 [this] { moving_map_ = thinned_map(layers_.moving, lidar_, options_.depth, kMovingVoxel_m); });
   return moving_map_;
 }
 
 const Cloud& LidarFrame::gone_map() const {
-  std::call_once(gone_once_, [this] { gone_map_ = thinned(layers_.gone, kGoneVoxel_m); });
+  std::call_once(gone_once_,
+                 [this] { gone_map_ = thinned_map(layers_.gone, lidar_, options_.depth, kGoneVoxel_m); });
   return gone_map_;
 }
 
@@ -124,6 +139,10 @@ const Target& Snapshot::target() const {
       append(moving_map, frame->moving_map());
       append(gone_map, frame->gone_map());
     }
+    for (const auto& part : room_->parts())
+      for (const auto& frame : frames_)
+        if (&frame->lidar() == &part->lidar() && frame->surfaces() != part)
+          append(gone_map, frame->surfaces()->missing_of(*part));
     target_.dynamic =
         std::make_shared<const DynamicRegions>(target_.surfaces, target_.views, moving_map, gone_map);
     has_target_ = true;

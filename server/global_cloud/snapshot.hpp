@@ -36,6 +36,8 @@ class LidarSurfaces {
   [[nodiscard]] SightView view() const;
   [[nodiscard]] const GlobalLidar& lidar() const { return lidar_; }
   [[nodiscard]] const DepthImage& image() const { return image_; }
+  /// Of earlier surfaces before the same LiDAR, those that it has no more, thinned.
+  [[nodiscard]] Cloud missing_of(const LidarSurfaces& before) const;
 
  private:
   const DepthImage image_;
@@ -64,8 +66,6 @@ class LidarFrame {
   [[nodiscard]] const Cloud& gone_map() const;
 
  private:
-  [[nodiscard]] Cloud thinned(const DepthImage& image, double voxel_m) const;
-
   const Layers layers_;
   const std::shared_ptr<const LidarSurfaces> surfaces_;
   const GlobalLidar& lidar_;

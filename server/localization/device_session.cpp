@@ -65,6 +65,11 @@ std::optional<Remembered> DeviceSession::remembered() const {
   return Remembered{segment_->id, *segment_->followed};
 }
 
+void DeviceSession::unwatched_for(double spots) {
+  if (segment_ && segment_->followed)
+    segment_->followed = unwatched(*segment_->followed, spots, verify_.step_sd_rad, verify_.step_sd_m);
+}
+
 /// After a search that came to nothing.
 void DeviceSession::refuse(const Found& found, SpotReply* reply) {
   const bool cut_off = found.outcome == Found::Outcome::cut_off;

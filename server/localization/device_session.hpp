@@ -41,6 +41,8 @@ class DeviceSession {
   void forget_spots() {
     if (segment_) segment_->tracks.clear();
   }
+  /// Nobody looked for as long as so many spots take: a pose that is followed is less sure.
+  void unwatched_for(double spots);
   /// What it remembers; the next answer rests on it.
   [[nodiscard]] const std::optional<Segment>& segment() const { return segment_; }
 

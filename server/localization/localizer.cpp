@@ -49,6 +49,12 @@ struct Localizer::Impl {
     return held;
   }
 
+  /// The caller locks.
+  [[nodiscard]] std::shared_ptr<DeviceSession> parked_session(const std::string& client_id) const {
+    const auto found = parked.find(client_id);
+    return found == parked.end() ? nullptr : found->second.session;
+  }
+
   /// The session, if there is one, whose spots are to be forgotten without this lock.
   std::shared_ptr<DeviceSession> park(const std::string& client_id) {
     const std::scoped_lock lock(mutex);
@@ -57,7 +63,7 @@ struct Localizer::Impl {
     const auto now = Clock::now();
     std::erase_if(parked, [&](const auto& entry) { return now - entry.second.since > kParkedFor; });
     const auto found = sessions.find(client_id);
-    if (found == sessions.end()) return nullptr;
+    if (found == sessions.end()) return parked_session(client_id);  // left while a worker held it
     const auto left = found->second;
     parked[client_id] = {left, now};
     sessions.erase(found);
@@ -163,32 +169,37 @@ SpotReply Localizer::locate(const SpotRequest& request) {
 void Localizer::forget(const std::string& client_id) {
   const auto left = impl_->park(client_id);
   if (!left) return;
-  const std::scoped_lock in_turn(left->mutex);
-  left->forget_spots();
+  // The network's thread must not wait for a search: who works on the session forgets again when he is done.
+  const std::unique_lock in_turn(left->mutex, std::try_to_lock);
+  if (in_turn) left->forget_spots();
 }
 
 std::optional<Remembered> Localizer::remembered(const std::string& client_id) const {
   std::unique_lock lock(impl_->mutex);
   const auto found = impl_->sessions.find(client_id);
-  if (found == impl_->sessions.end()) return std::nullopt;
-  const auto held = found->second;
+  // A client that left while its request was in work has its session among those that are kept.
+  const auto held = found != impl_->sessions.end() ? found->second : impl_->parked_session(client_id);
   lock.unlock();
+  if (!held) return std::nullopt;
   const std::scoped_lock in_turn(held->mutex);
   return held->remembered();
 }
 
 void Localizer::resume(const std::string& client_id, const Remembered& remembered, double age_s) {
-  const VerifyOptions verify;
   // At least one: between the last spot and the next the odometry of one request is known.
   const double spots = 1 + age_s / to_seconds(kRequestInterval);
-  DeviceSession::Segment segment{remembered.odom_segment, Tracks(verify.tracks)};
-  segment.followed = unwatched(remembered.followed, spots, verify.step_sd_rad, verify.step_sd_m);
   const std::scoped_lock lock(impl_->mutex);
-  if (const auto whole = impl_->parked.extract(client_id)) {  // with what it saw of who moves
-    impl_->sessions[client_id] = whole.mapped().session;
-    return;
+  std::shared_ptr<DeviceSession> session;
+  if (const auto kept = impl_->parked.extract(client_id)) {
+    session = kept.mapped().session;  // with what it saw of who moves
+  } else {
+    DeviceSession::Segment segment{remembered.odom_segment, Tracks(VerifyOptions{}.tracks)};
+    segment.followed = remembered.followed;
+    session = std::make_shared<DeviceSession>(impl_->options, std::move(segment));
   }
-  impl_->sessions[client_id] = std::make_shared<DeviceSession>(impl_->options, std::move(segment));
+  // Where a worker still looks at it, it is not unwatched.
+  if (const std::unique_lock in_turn(session->mutex, std::try_to_lock); in_turn) session->unwatched_for(spots);
+  impl_->sessions[client_id] = std::move(session);
 }
 
 void Localizer::forget_all() {

@@ -167,15 +167,16 @@ void RequestScheduler::work_on(const wire::Arrival& arrival) {
   }
   if (backend_.on_located) backend_.on_located(arrival.from.client_id, arrival.from.session);
   tell(Stage::work, begun);
-  bool is_current = false;
+  bool goes_on = false;
   {
     const std::scoped_lock lock(mutex_);
     sessions_.answered(arrival, reply);
-    is_current = sessions_.is_current(arrival.from);
+    goes_on = sessions_.goes_on(arrival.from);
   }
   finish(arrival, std::move(reply));
-  // The client left or began anew meanwhile: what this request and its answer have left behind is nobody's.
-  if (!is_current && backend_.forget) backend_.forget(arrival.from.client_id);
+  // The client left or began anew meanwhile: what this request and its answer have left behind is nobody's. A
+  // run that came back with another writer has taken it up.
+  if (!goes_on && backend_.forget) backend_.forget(arrival.from.client_id);
 }
 
 std::optional<std::uint64_t> RequestScheduler::may_say(SourceLimit& lines, const std::string& of) {

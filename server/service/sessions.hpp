@@ -65,6 +65,11 @@ class Sessions {
     return client != clients_.end() && client->second.publication == from.publication &&
            client->second.session == from.session;
   }
+  /// Whether the run of the sender is the client's last one, by whichever of its writers.
+  [[nodiscard]] bool goes_on(const wire::Sender& from) const {
+    const auto client = clients_.find(from.client_id);
+    return client != clients_.end() && client->second.session == from.session;
+  }
   /// By its own writer's requests alone: another's say nothing, whatever id they carry.
   [[nodiscard]] bool is_late(const wire::Sender& from, std::uint64_t seq) const {
     const Run* run = run_of(from);

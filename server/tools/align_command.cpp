@@ -35,7 +35,8 @@ void print_json(const AlignResult& result, double latency_ms) {
   }
   const nlohmann::ordered_json json{{"T_target_source", rows},   {"fitness", result.fitness},
                                     {"rmse_m", result.rmse_m},   {"confidence", result.confidence},
-                                    {"trusted", result.trusted}, {"latency_ms", latency_ms}};
+                                    {"trusted", result.trusted}, {"found", result.found},
+                                    {"latency_ms", latency_ms}};
   fmt::print("{}\n", json.dump());
 }
 

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <optional>
 
 #include "common/base/quantile.hpp"
@@ -44,6 +45,7 @@ std::optional<Scalar> scalar_of(std::uint8_t datatype) {
 
 // Beyond what the cloud itself spans. A sensor sees half as far. By hand.
 constexpr double kFarOff_m = 20;
+constexpr double kCoarsest_m = 0.005;  // between coordinates: a tenth of a voxel; by hand
 
 /// x, y and z of every point as they are stored: PCL's own conversion takes an axis of another type for zero.
 Result<Points> points_of(const pcl::PCLPointCloud2& stored, const std::string& name) {
@@ -105,6 +107,12 @@ Cloud cloud_about(const Points& points, const Eigen::Vector3d& origin) {
   return cloud;
 }
 
+/// Whether the coordinates are told no better than by floats.
+bool are_floats(const Points& points) {
+  return std::ranges::all_of(points,
+                             [](const Eigen::Vector3d& p) { return p == p.cast<float>().cast<double>(); });
+}
+
 /// In whole metres; (0, 0, 0) where that lies among the points or near them, a few strays aside.
 Eigen::Vector3d origin_of(const Points& points) {
   Eigen::Vector3d middle, off;
@@ -127,10 +135,17 @@ Result<Cloud> read_cloud_file(const std::filesystem::path& file) {
 }
 
 Result<PlacedCloud> read_placed_cloud(const std::filesystem::path& file) {
-  return read_points(file).map([](const Points& points) {
-    const Eigen::Vector3d origin = origin_of(points);
-    return PlacedCloud{cloud_about(points, origin), origin};
-  });
+  const auto points = read_points(file);
+  if (!points) return tl::unexpected(points.error());
+  const Eigen::Vector3d origin = origin_of(*points);
+  const double apart_m =
+      origin.cwiseAbs().maxCoeff() * static_cast<double>(std::numeric_limits<float>::epsilon());
+  if (apart_m > kCoarsest_m && are_floats(*points))
+    return fail(
+        "{}: lies {:.0f} m from its origin in floats, which are {:.2g} m apart there; write x, y and z as "
+        "doubles",
+        file.string(), origin.norm(), apart_m);
+  return PlacedCloud{cloud_about(*points, origin), origin};
 }
 
 }  // namespace liloc::toolbox

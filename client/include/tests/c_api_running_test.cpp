@@ -70,7 +70,7 @@ TEST(CApiRunning, ACallbackThatStopsItsClientIsRefused) {
 }
 
 void keep_line(int level, const char* line, void* user) {
-  if (level == LILOC_LOG_ERROR) *static_cast<std::string*>(user) = line;
+  if (level == LILOC_LOG_ERROR) *static_cast<std::string*>(user) += line;
 }
 
 TEST(CApiRunning, DestroyFreesAndSaysSoWhateverTheTraceSays) {
@@ -80,7 +80,6 @@ TEST(CApiRunning, DestroyFreesAndSaysSoWhateverTheTraceSays) {
   o.trace_folder = trace.c_str();
   liloc_client* client = created(o).release();
   ASSERT_EQ(liloc_client_start(client), LILOC_OK) << error();
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(push(client, frame_stamp_ns(i)), LILOC_OK);
   std::string told;
   ASSERT_EQ(liloc_client_set_log(keep_line, &told), LILOC_OK);
   rlimit before{};
@@ -88,6 +87,9 @@ TEST(CApiRunning, DestroyFreesAndSaysSoWhateverTheTraceSays) {
   const auto signal_before = std::signal(SIGXFSZ, SIG_IGN);
   const rlimit full{1, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &full);
+  EXPECT_EQ(push(client, frame_stamp_ns(0)), LILOC_OK);
+  liloc_pose_update now{};
+  EXPECT_TRUE(within(20s, [&] { return liloc_client_newest(client, &now, sizeof now) == LILOC_OK; }));
   EXPECT_EQ(liloc_client_destroy(client), LILOC_OK);
   setrlimit(RLIMIT_FSIZE, &before);
   static_cast<void>(std::signal(SIGXFSZ, signal_before));

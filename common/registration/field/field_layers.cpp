@@ -158,8 +158,8 @@ void FieldLayers::add(const Cloud& cloud_map, std::size_t i, Stamp* stamp) {
   }
 }
 
+/// Also where the region has shrunk and does not hold it any more; what lies in others is out of reach.
 void FieldLayers::forget(const Eigen::Vector3f& p_map, Stamp* stamp) {
-  if (!holds(region_, p_map)) return;
   stamp->take(*this, p_map);
   for (int plane = 0; plane <= kAny; ++plane)
     for (std::size_t k = 0; k < stamp->count; ++k)

@@ -27,8 +27,8 @@ enum Word : std::int32_t { kNoWord = 0, kLookedThrough = 1, kMeasured = 2 };
 void look_at(const Pinhole& camera, const DepthBand* bands, const PointRun& points, float tolerance_m,
              std::int32_t* words);
 /// The same of points that lie on surfaces with these unit normals, or zero where none is known. What is looked
-/// through must also lie `tolerance_m` before what was measured along its own normal: past a surface that a
-/// line of sight grazes a sensor looks for want of a return, and where a centimetre is a metre along the line.
+/// through must also lie 5 cm before what was measured along its own normal: past a surface that a line of
+/// sight grazes a sensor looks for want of a return, and where a centimetre is a metre along the line.
 void look_at(const Pinhole& camera, const DepthBand* bands, const PointRun& points, const PointRun& normals,
              float tolerance_m, std::int32_t* words);
 

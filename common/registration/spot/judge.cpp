@@ -25,7 +25,7 @@ Counts device_against_ceiling(const Target& target, const Cloud& points, const E
   Counts counts;
   std::array<float, kAtOnce> x, y, z, nx, ny, nz;
   std::array<std::int32_t, kAtOnce> words;
-  const bool normals = points.normals.size() == points.size();
+  const bool normals = points.has_normals();
   for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
     const std::size_t here = std::min(kAtOnce, points.size() - begin);
     for (std::size_t i = 0; i < here; ++i) {

@@ -88,8 +88,7 @@ DepthImage with_columns_at(double at_s, std::uint16_t units) {
 
 TEST(Background, WhoStoodAndWalksAwayIsGoneAtHisFirstStep) {
   Background background(kCamera, {});
-  for (int i = 0; i < 5; ++i)
-    EXPECT_EQ(count(background.learn(with_columns_at(0.15 * i, 2500)).gone, 0), 40 * 30);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(background.learn(with_columns_at(0.15 * i, 2500)).gone.units.empty());
   (void)background.surfaces();
   for (int i = 0; i < 4; ++i)  // two depths in a row never agree, so that nothing is known of what is there now
     EXPECT_EQ(
@@ -99,7 +98,7 @@ TEST(Background, WhoStoodAndWalksAwayIsGoneAtHisFirstStep) {
         6 * 30)
         << "frame " << i;
   (void)background.learn(with_columns_at(1.5, 2500));
-  EXPECT_EQ(count(background.learn(with_columns_at(1.65, 2500)).gone, 0), 40 * 30) << "he is back";
+  EXPECT_TRUE(background.learn(with_columns_at(1.65, 2500)).gone.units.empty()) << "he is back";
 }
 
 TEST(Background, WhoLeavesWhereNothingReturnsIsGoneAtTheSecondFrameWithoutAReturn) {
@@ -113,7 +112,7 @@ TEST(Background, WhoLeavesWhereNothingReturnsIsGoneAtTheSecondFrameWithoutARetur
   EXPECT_EQ(count(background.learn(with_columns_at(7.80, 0)).gone, 2500), 6 * 30)
       << "until it is shown no more";
   EXPECT_EQ(count(background.surfaces(), 2500), 0);
-  EXPECT_EQ(count(background.learn(with_columns_at(7.95, 0)).gone, 0), 40 * 30);
+  EXPECT_TRUE(background.learn(with_columns_at(7.95, 0)).gone.units.empty());
 }
 
 TEST(Background, APixelAloneThatLooksFartherIsNoise) {
@@ -122,7 +121,7 @@ TEST(Background, APixelAloneThatLooksFartherIsNoise) {
   (void)background.surfaces();
   DepthImage image = with_visitor(0.75, 10, 16);
   image.units[15 * 40 + 12] = 3900;
-  EXPECT_EQ(count(background.learn(image).gone, 0), 40 * 30);
+  EXPECT_TRUE(background.learn(image).gone.units.empty());
 }
 
 TEST(Background, WhoCameNearerSinceTheFirstFramesLeavesNoGhost) {

@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <functional>
+#include <future>
 #include <thread>
+#include <utility>
 
 #include "server/localization/tests/world.hpp"
 #include "server/localization/verification.hpp"
@@ -62,6 +65,48 @@ TEST_P(LocalizerLaw, WhatWasRememberedIsGoneOnWithByAnotherServer) {
   EXPECT_EQ(reply.reason, Reason::confirmed) << reply.text;
   ASSERT_TRUE(reply.T_map_sensor);
   EXPECT_TRUE(near(*reply.T_map_sensor, after.truth(k)));
+}
+
+TEST_P(LocalizerLaw, WhoComesBackIsLessSureTheLongerNobodyLooked) {
+  World world(GetParam());
+  SpotReply last;
+  int k = 0;
+  for (; k < 6 && !last.verified(); ++k) last = world.ask(k);
+  ASSERT_TRUE(last.verified());
+  const auto before = world.localizer->remembered("robot");
+  ASSERT_TRUE(before);
+  double sd_m = before->followed.estimate.sd_m();
+  for (const double away_s : {5.0, 50.0}) {
+    world.localizer->forget("robot");
+    EXPECT_TRUE(world.localizer->remembered("robot")) << "a request may still be in work";
+    world.localizer->resume("robot", *before, away_s);
+    const auto now = world.localizer->remembered("robot");
+    ASSERT_TRUE(now);
+    EXPECT_LE(now->followed.log_odds, before->followed.log_odds);
+    EXPECT_GT(now->followed.estimate.sd_m(), 1.5 * sd_m) << away_s << " s";
+    sd_m = now->followed.estimate.sd_m();
+  }
+}
+
+TEST_P(LocalizerLaw, WhoLeavesDuringASearchKeepsNobodyWaiting) {
+  std::promise<void> inside, open;
+  LocalizerOptions options;
+  options.idle = [&, first = true]() mutable {
+    if (std::exchange(first, false)) {
+      inside.set_value();
+      open.get_future().wait();
+    }
+    return true;
+  };
+  World world(GetParam(), options);
+  world.watch(0);
+  auto reply =
+      std::async(std::launch::async, [&] { return world.localizer->locate(world.request(0, world.truth(0))); });
+  inside.get_future().wait();
+  auto forgotten = std::async(std::launch::async, [&] { world.localizer->forget("robot"); });
+  EXPECT_EQ(forgotten.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  open.set_value();
+  (void)reply.get();
 }
 
 TEST_P(LocalizerLaw, WhatIsRememberedOfAnotherPlaceIsNotBelieved) {

@@ -210,5 +210,29 @@ TEST(SchedulerClients, WhatAnEndedRunLeftBehindIsForgottenBeforeTheNextIsAnswere
   answers.expect_each_once(2);
 }
 
+TEST(SchedulerClients, ARunThatComesBackWithAnotherWriterIsNotForgottenByItsOldRequest) {
+  Gate gate;
+  Answers answers;
+  std::mutex mutex;
+  std::vector<std::string> events;
+  const auto note = [&](std::string event) {
+    const std::scoped_lock lock(mutex);
+    events.push_back(std::move(event));
+  };
+  ServiceBackend backend{.locate = [&](const SpotRequest& r) { return gate.pass(r); }};
+  backend.forget = [&](const std::string&) { note("forgotten"); };
+  backend.begin = [&](const std::string&, std::uint64_t) { note("begun"); };
+  RequestScheduler scheduler({.workers = 2}, backend, answers.sink());
+  scheduler.submit(arrival("a", 1, 5));
+  gate.wait_inside();
+  wire::Arrival again = arrival("a", 2, 5);
+  again.from.publication += 1000;
+  scheduler.submit(std::move(again));
+  gate.open();
+  ASSERT_TRUE(answers.wait_for(2));
+  scheduler.stop();
+  EXPECT_EQ(events, (std::vector<std::string>{"begun", "forgotten", "begun"}));
+}
+
 }  // namespace
 }  // namespace liloc

@@ -43,6 +43,11 @@ TEST(CloudFile, WhatLiesFarFromItsOriginIsPlacedAboutItsMiddle) {
   ASSERT_TRUE(placed) << placed.error().message;
   for (std::size_t i = 0; i < far.size(); ++i)
     EXPECT_LT((placed->origin + placed->cloud.points[i].cast<double>() - far[i]).norm(), 1e-5);
+  const auto coarse =
+      read_placed_cloud(folder.put("coarse.ply", test::ply_of<float>(far, "binary_little_endian", "float")));
+  ASSERT_FALSE(coarse) << "half a metre is lost";
+  EXPECT_NE(coarse.error().message.find("write x, y and z as doubles"), std::string::npos)
+      << coarse.error().message;
   const auto near = read_placed_cloud(folder.put("near.pcd", test::pcd_of<double>(kPoints, "binary", 'F')));
   ASSERT_TRUE(near) << near.error().message;
   EXPECT_EQ(near->origin, Eigen::Vector3d(0, 0, 0)) << "it stays where it is";

@@ -135,6 +135,25 @@ TEST_P(FieldLayersLaw, MadeOfEarlierOnesTheyAreThoseMadeAnew) {
   expect_same(FieldLayers(now, views, {}, {before, w.target.views, change}), FieldLayers(now, views, {}));
 }
 
+TEST_P(FieldLayersLaw, WhatStoodAtTheRimOfARegionAndIsGoneLeavesNothing) {
+  const WatchedRoom w = watched_room(GetParam());
+  const Cloud& now = w.target->cloud;
+  const Region region = regions_of(now.points, kFarApart_m).front();
+  Cloud before = now;  // with a curtain, so near to the wall that the grid is the same
+  const double beyond_m = region.max().x() + 1e-3;
+  for (int i = 0; i < 20; ++i) {
+    before.points.emplace_back(static_cast<float>(beyond_m),
+                               static_cast<float>(region.center().y()) + 0.05F * i, 1.0F);
+    before.normals.emplace_back(-1, 0, 0);
+  }
+  const FieldLayers earlier(before, w.target.views, {}, regions_of(before.points, kFarApart_m).front());
+  const FieldLayers anew(now, w.target.views, {}, region);
+  ASSERT_EQ(earlier.size(), anew.size());
+  const CloudChange change = change_between(before, now);
+  ASSERT_TRUE(change.little(now.size()));
+  expect_same(FieldLayers(now, w.target.views, {}, {earlier, w.target.views, change}, region), anew);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, FieldLayersLaw, testing::Range(1U, 4U));
 
 TEST(FieldLayers, OfNothingAreEmptyAndOfABuildingCoarser) {

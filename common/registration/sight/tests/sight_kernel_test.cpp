@@ -78,26 +78,36 @@ TEST_P(SightKernelLaw, WhatASurfaceShowsByItsEdgeIsNotLookedThrough) {
   std::vector<DepthBand> bands(32 * 24 + 1, {5, 5, 5});
   bands.back() = {};
   constexpr std::size_t kCount = 1003;
-  Vectors points(kCount), along(kCount), across(kCount), unknown(kCount);
+  constexpr float kNearly_m = 0.04F, kEnough_m = 0.06F;  // along the normal, of a gap in the line of sight
+  Vectors points(kCount), along(kCount), across(kCount), unknown(kCount), nearly(kCount), enough(kCount);
   for (std::size_t i = 0; i < kCount; ++i) {
     const Eigen::Vector3f p_sensor(side(rng), side(rng), depth(rng));
     points.set(i, R.transpose() * p_sensor);
     along.set(i, R.transpose() * p_sensor.unitOrthogonal());
     across.set(i, R.transpose() * -p_sensor.normalized());
     unknown.set(i, Eigen::Vector3f::Zero());
+    const Eigen::Vector3f ray = p_sensor.normalized(), side_of = p_sensor.unitOrthogonal();
+    const auto leaning = [&](float gap_m) {  // from the line of sight, so that its gap is so much
+      const float cosine = gap_m / ((5 - p_sensor.z()) / ray.z());
+      return Eigen::Vector3f(R.transpose() * (cosine * ray + std::sqrt(1 - cosine * cosine) * side_of));
+    };
+    nearly.set(i, leaning(kNearly_m));
+    enough.set(i, leaning(kEnough_m));
   }
   const auto through = [&](const Vectors* normals) {
     std::vector<std::int32_t> words(kCount, kNoWord);
     if (normals == nullptr)
-      look_at(camera, bands.data(), points.run(0, kCount), 0.05F, words.data());
+      look_at(camera, bands.data(), points.run(0, kCount), 0.02F, words.data());
     else
-      look_at(camera, bands.data(), points.run(0, kCount), normals->run(0, kCount), 0.05F, words.data());
+      look_at(camera, bands.data(), points.run(0, kCount), normals->run(0, kCount), 0.02F, words.data());
     return std::ranges::count(words, kLookedThrough);
   };
   EXPECT_EQ(through(nullptr), kCount);
   EXPECT_EQ(through(&across), kCount);
   EXPECT_EQ(through(&unknown), kCount) << "without a normal a point counts as before";
   EXPECT_EQ(through(&along), 0);
+  EXPECT_EQ(through(&nearly), 0) << "5 cm it takes, whatever the tolerance";
+  EXPECT_EQ(through(&enough), kCount);
 }
 
 TEST_P(SightKernelLaw, ABallReachesInWhereEachHalfSpaceSaysSo) {

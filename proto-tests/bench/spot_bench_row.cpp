@@ -32,7 +32,7 @@ Status write_csv(const std::string& path, const std::vector<Row>& rows) {
   std::ofstream out(path);
   out << "site,seed,client,seq,cold,overlap_truth,error_deg,error_m,status,reason,fitness,overlap,margin,"
          "latency_ms,cpu_ms,prepare_ms,nees,ex_rad,ey_rad,ez_rad,ex_m,ey_m,ez_m,sx_rad,sy_rad,sz_rad,sx_m,sy_m,"
-         "sz_m,conflict_truth,map_conflict_truth,confidence,advice,text\n";
+         "sz_m,conflict_truth,map_conflict_truth,miss,confidence,advice,text\n";
   for (const Row& r : rows) {
     const Vector6d sd = r.reply.covariance.diagonal().cwiseMax(0).cwiseSqrt();
     out << fmt::format(
@@ -42,8 +42,8 @@ Status write_csv(const std::string& path, const std::vector<Row>& rows) {
         r.reply.latency_ms, r.cpu_ms, r.prepare_ms, r.nees);
     for (const Vector6d& numbers : {r.error, sd})
       out << fmt::format("{:.6f},", fmt::join(numbers.begin(), numbers.end(), ","));
-    out << fmt::format("{:.5f},{:.5f},{:.6f},{},\"{}\"\n", r.conflict_truth, r.map_conflict_truth,
-                       r.reply.confidence, name_of(r.reply.advice), r.reply.text);
+    out << fmt::format("{:.5f},{:.5f},{},{:.6f},{},\"{}\"\n", r.conflict_truth, r.map_conflict_truth,
+                       static_cast<int>(r.miss), r.reply.confidence, name_of(r.reply.advice), r.reply.text);
   }
   if (!out.flush()) return fail("{}: cannot be written; name a file in a folder that exists", path);
   return {};

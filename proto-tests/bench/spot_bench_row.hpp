@@ -7,12 +7,16 @@
 
 namespace liloc::bench {
 
+/// Where a search lost the right answer, if it did.
+enum class Miss { none, proposing, refining, judging };
+
 struct Row {
   std::string site;
   std::uint64_t seed = 0;
   bool cold = false;
   double overlap = 0;  ///< true: share of the device's points that the ceiling sees
   double error_deg = 999, error_m = 999;
+  Miss miss = Miss::none;                             ///< of a cold one
   double conflict_truth = 0, map_conflict_truth = 0;  ///< what the judge holds against the truth itself
   Vector6d error = Vector6d::Zero();                  ///< [rad; m] in the sensor's true axes
   double nees =

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 
+#include "proto-tests/bench/spot_bench_misses.hpp"
 #include "proto-tests/bench/spot_bench_tables.hpp"
 #include "server/tools/command.hpp"
 
@@ -107,6 +108,7 @@ Result<TrialResult> run_spots(const SpotsOptions& options) {
   print_success(result->rows, true);
   print_success(result->rows, false);
   print_by_site(result->rows);
+  print_misses(result->rows);
   print_consistency(result->rows);
   if (options.trial.peer_every > 0) run_peers(*result, options.trial.threads);
   return result;

@@ -9,6 +9,7 @@
 #include "common/codec/codec.hpp"
 #include "common/registration/points/normals.hpp"
 #include "common/registration/refine/pose_covariance.hpp"
+#include "proto-tests/bench/spot_bench_misses.hpp"
 #include "proto-tests/replay/prepare.hpp"
 #include "proto-tests/replay/truth.hpp"
 #include "server/localization/answered.hpp"
@@ -130,6 +131,7 @@ class Trial {
     d.engine.add_reply(live);
     truth_ = judged_at_truth(asked);
     add_row(std::move(cold), true, live_ms - cold_ms, overlap, asked);
+    if (!result_.rows.empty() && result_.rows.back().cold) result_.rows.back().miss = missed(alone, asked);
     add_row(std::move(live), false, done_ms - live_ms, overlap, asked);
   }
 
@@ -175,6 +177,15 @@ class Trial {
     row.conflict_truth = truth_.conflict;
     row.map_conflict_truth = truth_.map_conflict;
     result_.rows.push_back(std::move(row));
+  }
+
+  /// Of the newest row.
+  [[nodiscard]] Miss missed(const SpotRequest& request, const Asked& asked) {
+    const auto snapshot = cloud_.nearest(request.match_stamp_ns());
+    if (!snapshot || !result_.rows.back().reply.T_map_sensor) return Miss::none;
+    const auto spot = Spot::create(request, *snapshot, server_options_);
+    if (!spot) return Miss::none;
+    return miss_of((*spot)->problem(), *result_.rows.back().reply.T_map_sensor, asked.T_map_sensor_true);
   }
 
   [[nodiscard]] Judgement judged_at_truth(const Asked& asked) {

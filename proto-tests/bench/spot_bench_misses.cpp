@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/registration/spot/polish.hpp"
+#include "common/registration/spot/spot.hpp"
 
 namespace liloc::bench {
 namespace {
@@ -17,13 +17,10 @@ bool right(const Pose& T, const Pose& T_true) {
 
 Miss miss_of(const SpotProblem& problem, const Pose& T_map_sensor, const Pose& T_map_sensor_true) {
   if (right(T_map_sensor, T_map_sensor_true)) return Miss::none;
-  Hypothesis at_truth = refine_and_judge(problem, T_map_sensor_true);
-  if (!is_clean(at_truth)) at_truth = polish(problem, T_map_sensor_true, std::move(at_truth));
+  const auto proposed = [&](const Pose& T) { return judge_candidates(problem, {{T, 0}}).front(); };
+  const Hypothesis at_truth = proposed(T_map_sensor_true);
   if (!right(at_truth.T_map_sensor(), T_map_sensor_true)) return Miss::refining;
-  const double answered =
-      judge(problem.target, problem.query, problem.query.medium, T_map_sensor, problem.judging.fine_tolerance_m)
-          .score;
-  return at_truth.judgement.score > answered ? Miss::proposing : Miss::judging;
+  return at_truth.standing > proposed(T_map_sensor).standing ? Miss::proposing : Miss::judging;
 }
 
 void print_misses(const std::vector<Row>& rows) {

@@ -9,7 +9,7 @@
 namespace liloc::bench {
 
 /// Of a search's answer that is off by more than 10 degrees or 0.3 m: proposed, the truth would have won; or
-/// refinement leaves it; or the judge likes the answer better.
+/// refinement leaves it; or the answer stands higher.
 [[nodiscard]] Miss miss_of(const SpotProblem& problem, const Pose& T_map_sensor, const Pose& T_map_sensor_true);
 
 /// What the cold misses at an overlap over 0.3 are made of.

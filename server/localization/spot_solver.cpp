@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <limits>
 
 #include "common/base/log.hpp"
 #include "common/codec/codec.hpp"
@@ -39,9 +41,7 @@ std::vector<Hypothesis> merged(std::vector<Hypothesis> a, const std::vector<Hypo
     if (std::none_of(a.begin(), a.end(),
                      [&](const Hypothesis& k) { return same_place(k.T_map_sensor(), h.T_map_sensor()); }))
       a.push_back(h);
-  std::stable_sort(a.begin(), a.end(), [](const Hypothesis& x, const Hypothesis& y) {
-    return x.judgement.score > y.judgement.score;
-  });
+  std::ranges::stable_sort(a, std::ranges::greater(), &Hypothesis::standing);
   return a;
 }
 
@@ -122,7 +122,9 @@ bool Spot::plausible(const Hypothesis& hypothesis) const {
 double margin_of(const std::vector<Hypothesis>& hypotheses) {
   if (hypotheses.empty() || hypotheses.front().judgement.score <= 0) return 0;
   if (hypotheses.size() < 2) return 1;
-  return std::clamp(1.0 - hypotheses[1].judgement.score / hypotheses[0].judgement.score, 0.0, 1.0);
+  double next = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < hypotheses.size(); ++i) next = std::max(next, hypotheses[i].judgement.score);
+  return std::clamp(1.0 - next / hypotheses[0].judgement.score, 0.0, 1.0);
 }
 
 RoomSearch search(const Spot& spot, const LocalizerOptions& options) {

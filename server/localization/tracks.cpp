@@ -56,7 +56,7 @@ void Tracks::extend(Track* track, const Spot& spot, const std::vector<Hypothesis
   track->latest = *here;
   track->stayed = stayed;
   track->looks.push_back(terms_of(here->judgement, stayed && fits(*here, options_)));
-  track->surfaces.add(spot.problem().target, spot.query(), stayed ? here->T_map_sensor() : predicted);
+  track->surfaces.add(spot.problem().target, spot.query().medium, stayed ? here->T_map_sensor() : predicted);
 }
 
 Track Tracks::founded(const Hypothesis& hypothesis) const {
@@ -72,7 +72,7 @@ Track Tracks::founded(const Hypothesis& hypothesis) const {
   track.latest = hypothesis;
   track.stayed = true;
   track.looks.push_back(terms_of(hypothesis.judgement, fits(hypothesis, options_)));
-  track.surfaces.add(newest.problem().target, newest.query(), hypothesis.T_map_sensor());
+  track.surfaces.add(newest.problem().target, newest.query().medium, hypothesis.T_map_sensor());
   return track;
 }
 

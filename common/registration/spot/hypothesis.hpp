@@ -20,7 +20,7 @@ struct JudgeOptions {
   /// Of the candidates, how many are refined with few points; as many as a search proposes.
   std::size_t sketch_most = 60;
   std::size_t refine_most = 8;  ///< of those, how many are refined fully
-  double rival = 0.3;           ///< in points of score: so near the best, a candidate is worth any effort
+  double rival = 3;             ///< in points of standing: so near the best, a candidate is worth any effort
   std::size_t keep = 5;
   RefineOptions refine;
 };
@@ -44,6 +44,7 @@ struct SpotProblem {
 struct Hypothesis {
   Alignment alignment;
   Judgement judgement;
+  double standing = 0;  ///< among what its search found (`standing_of`); 0 of a pose that was not searched for
   [[nodiscard]] const Pose& T_map_sensor() const { return alignment.T_target_source; }
 };
 

@@ -1,31 +1,42 @@
 #include "common/registration/spot/spot.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "common/registration/spot/polish.hpp"
+#include "common/registration/spot/ranking.hpp"
+#include "common/registration/target/surface_bits.hpp"
 
 namespace liloc {
 namespace {
 
 constexpr int kSketchIterations = 6;  // twelve won on some sites and lost on others, DECISIONS.md
 
+double standing_at(const SpotProblem& problem, const Cloud& device_points, const Pose& T_map_sensor,
+                   const Judgement& judgement, const Ranking& ranking) {
+  SurfaceBits bits;
+  bits.add(problem.target, device_points, T_map_sensor);
+  return standing_of(judgement, bits.sum(), ranking);
+}
+
 /// Moves each candidate nearer with few points, unless that makes it worse, as it does where surfaces do not
-/// hold a pose; and scores it.
+/// hold a pose; and says how it stands.
 void sketch(const SpotProblem& problem, std::vector<Candidate>* candidates) {
   const JudgeOptions& options = problem.judging;
-  const auto score = [&](const Pose& T_map_sensor) {
+  const auto judged = [&](const Pose& T_map_sensor) {
     return judge(problem.target, problem.query, problem.query.sparse, T_map_sensor, options.sketch_tolerance_m,
-                 MapShare::half, options.sketch_conflict_weight)
-        .score;
+                 MapShare::half, options.sketch_conflict_weight);
   };
   for (Candidate& c : *candidates) {
     const Pose nearer =
         approach(problem.target, problem.query, c.T_map_sensor, kSketchIterations, options.refine);
-    c.score = score(c.T_map_sensor);
-    const double score_nearer = score(nearer);
-    if (score_nearer < c.score) continue;
-    c.score = score_nearer;
-    c.T_map_sensor = nearer;
+    Judgement best = judged(c.T_map_sensor);
+    const Judgement there = judged(nearer);
+    if (there.score >= best.score) {
+      best = there;
+      c.T_map_sensor = nearer;
+    }
+    c.score = standing_at(problem, problem.query.sparse, c.T_map_sensor, best, kSketchRanking);
   }
 }
 
@@ -52,9 +63,9 @@ std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector
   sketch(problem, &candidates);
   candidates = distinct(std::move(candidates), options.refine_most);
   std::vector<Hypothesis> refined = refined_of(problem, candidates);
-  std::stable_sort(refined.begin(), refined.end(), [](const Hypothesis& a, const Hypothesis& b) {
-    return a.judgement.score > b.judgement.score;
-  });
+  for (Hypothesis& h : refined)
+    h.standing = standing_at(problem, problem.query.medium, h.T_map_sensor(), h.judgement, kRefinedRanking);
+  std::ranges::stable_sort(refined, std::ranges::greater(), &Hypothesis::standing);
   std::vector<Hypothesis> kept;
   for (const Hypothesis& h : refined) {
     const bool known = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& k) {

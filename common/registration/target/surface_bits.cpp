@@ -18,10 +18,9 @@ std::uint64_t cell_of(const Eigen::Vector3f& p_map) {
 
 }  // namespace
 
-void SurfaceBits::add(const Target& target, const Query& query, const Pose& T_map_sensor) {
+void SurfaceBits::add(const Target& target, const Cloud& cloud, const Pose& T_map_sensor) {
   const ScoreFields& field = target->field_coarse();
   const Eigen::Isometry3f T = T_map_sensor.cast<float>();
-  const Cloud& cloud = query.medium;
   if (!cloud.has_normals() || !target->coarse.has_normals()) return;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3f p = T * cloud.points[i], normal = T.linear() * cloud.normals[i];

@@ -41,8 +41,8 @@ class SurfaceBitsLaw : public testing::TestWithParam<unsigned> {
 
 TEST_P(SurfaceBitsLaw, TheRightPlaceRecognizesMoreThanOneBesideIt) {
   SurfaceBits right, beside;
-  right.add(target, query, T_map_device);
-  beside.add(target, query, T_map_device * scene::looking({0.9, 0.4, 0.0}, 0.4));
+  right.add(target, query.medium, T_map_device);
+  beside.add(target, query.medium, T_map_device * scene::looking({0.9, 0.4, 0.0}, 0.4));
   EXPECT_GT(right.sum(), 0);
   EXPECT_GT(right.sum(), 1.5 * beside.sum());
   EXPECT_LE(right.sum(), static_cast<double>(right.cells()));
@@ -50,9 +50,9 @@ TEST_P(SurfaceBitsLaw, TheRightPlaceRecognizesMoreThanOneBesideIt) {
 
 TEST_P(SurfaceBitsLaw, ASecondLookAtTheSameAddsNothing) {
   SurfaceBits bits;
-  bits.add(target, query, T_map_device);
+  bits.add(target, query.medium, T_map_device);
   const double once = bits.sum();
-  bits.add(target, query, T_map_device);
+  bits.add(target, query.medium, T_map_device);
   EXPECT_DOUBLE_EQ(bits.sum(), once);
 }
 

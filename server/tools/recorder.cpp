@@ -1,8 +1,8 @@
 #include "server/tools/recorder.hpp"
 
-#include <set>
 #include <system_error>
 
+#include "common/base/distinct_topics.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/recording/writer.hpp"
 #include "common/wire/sensors/sensors.hpp"
@@ -19,11 +19,10 @@ Status Recorder::check(const Site& site, const std::vector<DeviceInfo>& devices,
   std::error_code error;
   if (fs::exists(out, error) && (!fs::is_directory(out, error) || !fs::is_empty(out, error)))
     return fail("{}: is there already; name a new folder", out.string());
-  std::set<std::string> ids;
-  for (const GlobalLidar& lidar : site.global_lidars) ids.insert(lidar.id);
-  for (const DeviceInfo& device : devices)
-    if (!ids.insert(device.id).second) return fail("{}: two sensors have this id; rename one", device.id);
-  return {};
+  std::vector<std::string> ids;
+  for (const GlobalLidar& lidar : site.global_lidars) ids.push_back(lidar.id);
+  for (const DeviceInfo& device : devices) ids.push_back(device.id);
+  return check_distinct_topics(ids);
 }
 
 Result<std::unique_ptr<Recorder>> Recorder::create(wire::Dispatcher& dispatcher, const Site& site,

@@ -92,6 +92,11 @@ TEST_F(Record, BadUsageIsOneLineAndLeavesNothing) {
   wrong(path("rec") + " --site " + path("absent.json"), "no such file");
   wrong(path("rec") + " --domain 152 --site " + path("site.json") + " --device " + path("twin.json"),
         "two sensors have this id");
+  ASSERT_TRUE(write_device(path("one.json"), {"robot-1", camera, 15, 0, {}, {}}));
+  ASSERT_TRUE(write_device(path("other.json"), {"robot_1", camera, 15, 0, {}, {}}));
+  wrong(path("rec") + " --domain 152 --site " + path("site.json") + " --device " + path("one.json") +
+            " --device " + path("other.json"),
+        "robot-1 and robot_1 are one in the names of topics");
 }
 
 TEST_F(Record, WhatStandsInTheWayIsLeftAlone) {

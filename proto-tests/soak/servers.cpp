@@ -82,7 +82,7 @@ Status Standby::end(double now_s, bool killed, const StatusBoard& board) {
   const auto told = board.of(kName);
   const bool had_time = now_s - started_s_ > kAnswersWithin_s, answered = told && told->answered > 0;
   if (killed) kill(child_->pid(), SIGKILL);
-  const Status ended = child_->stop();
+  const Status ended = child_->stop(kStopsWithin);
   child_.reset();
   if (had_time && !answered) {
     ++silent_;

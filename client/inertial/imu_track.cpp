@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/base/log.hpp"
+#include "common/base/limited_log.hpp"
 
 namespace liloc {
 namespace {
@@ -107,7 +107,7 @@ Status ImuTrack::check(const ImuSample& sample) {
 
 /// What is known of the device stays; what happened between the two clocks is not.
 void ImuTrack::set_clock(StampNs by_ns) {
-  if (by_ns < 0) log::warning("IMU: its clock was set back by {:.1f} s", -to_seconds(by_ns));
+  if (by_ns < 0) log::limited(clock_lines_, "IMU: its clock was set back by {:.1f} s", -to_seconds(by_ns));
   entries_.clear();
   first_ns_ += by_ns;
   clipped_ns_ = wild_ns_ = halves_.force_ns = 0;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -139,7 +140,8 @@ TEST(ImuTrack, DriversOfTwoClocksThatTakeTurnsAreOneLine) {
       (void)track.add({stamp_ns, {0, 0, 0}, {0, 0, 9.81}});
     }
   log::set_sink({});
-  EXPECT_THAT(lines, testing::ElementsAre(testing::HasSubstr("IMU: its clock was set back by 12.0 s")));
+  EXPECT_EQ(std::ranges::count(lines, "IMU: its clock was set back by 12.0 s"), 1)
+      << testing::PrintToString(lines);
 }
 
 /// A driver with a message for each sensor, zeros for the other.

@@ -69,7 +69,7 @@ TEST_F(Record, AKillLeavesWhatHadComeUntilThen) {
 }
 
 TEST_F(Record, AFullDiskEndsItAndLeavesWholeFrames) {
-  const std::jthread site = streaming(8);
+  const std::jthread site = streaming(5);
   const Outcome full =
       on_full_disk(600, fmt::format("record {} --site {} --device {} --domain 151 --seconds 60",
                                     path("disk/rec"), path("site/site.json"), path("site/device0.json")));

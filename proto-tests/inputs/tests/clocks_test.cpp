@@ -1,4 +1,7 @@
 // Clocks that are set, stray stamps and clocks of ceiling LiDARs, over DDS against a server process.
+#include <cmath>
+#include <cstdlib>
+
 #include "proto-tests/inputs/tests/live_site.hpp"
 
 namespace liloc::inputs {
@@ -8,8 +11,14 @@ using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 
-constexpr auto kLocated = 3s;   // the project's bound, from a good stream to a located device
-constexpr auto kSlack = 500ms;  // by which a busy computer may be late
+/// The project's bound from a good stream to a located device, and a moment more; on a computer that has
+/// others' work to do as well it is longer.
+std::chrono::milliseconds soon(std::chrono::milliseconds bound = 3s) {
+  double load = 0;
+  (void)getloadavg(&load, 1);
+  const double busy = std::clamp(load / std::thread::hardware_concurrency(), 1.0, 5.0);
+  return std::chrono::milliseconds(std::lround(busy * static_cast<double>((bound + 500ms).count())));
+}
 
 class Clocks : public LiveSite {
  protected:
@@ -19,13 +28,16 @@ class Clocks : public LiveSite {
     add_robot(0);
     add_robot(1, {"--points-topic", "device1/points"});
     add_robot(2, {"--odometry-topic", "device2/odom"});
-    ASSERT_TRUE(comes_to_hold([&] { return all_located(); }, 30s) || !kMeasured) << robots_told();
+    ASSERT_TRUE(comes_to_hold([&] { return all_located(); }, 60s) || !kMeasured) << robots_told();
   }
   [[nodiscard]] std::vector<std::uint32_t> segments() const {
     std::vector<std::uint32_t> all;
     for (const auto& robot : robots_) all.push_back(robot->newest().odom_segment);
     return all;
   }
+  const std::function<bool()> all_right = [this] {
+    return all_located() && error_m(0) < 0.3 && error_m(1) < 0.3 && error_m(2) < 0.3;
+  };
   void set_clocks_back_and_locate();
   void fall_silent_and_locate();
   void send_strays_and_go_on();
@@ -46,7 +58,7 @@ void Clocks::set_clocks_back_and_locate() {
         }
         return anew && all_located();
       },
-      kLocated + kSlack);
+      soon());
   EXPECT_TRUE(located) << robots_told();
   EXPECT_THAT(told, testing::Each(true)) << robots_told();
   for (const auto& robot : robots_) EXPECT_LE(robot->stats().frames_refused, 2U) << robots_told();
@@ -62,11 +74,10 @@ void Clocks::fall_silent_and_locate() {
                  robot.stats().problem.find("no depth frames for") != std::string::npos;
         });
       },
-      2s + kSlack))
+      soon(2s)))
       << robots_told();
   site_->spoil.devices_silent = false;
-  const auto again = [&] { return all_located() && error_m(0) < 0.3 && error_m(1) < 0.3 && error_m(2) < 0.3; };
-  EXPECT_TRUE(comes_to_hold(again, kLocated + kSlack)) << robots_told();
+  EXPECT_TRUE(comes_to_hold(all_right, soon())) << robots_told();
 }
 
 void Clocks::send_strays_and_go_on() {
@@ -78,7 +89,9 @@ void Clocks::send_strays_and_go_on() {
   site_->spoil.stray_odometry = true;
   const auto until = std::chrono::steady_clock::now() + 1500ms;
   while (std::chrono::steady_clock::now() < until) {
-    ASSERT_TRUE(all_located()) << robots_told();
+    ASSERT_TRUE(all([](const Robot& robot) {  // a late answer is no fault of theirs
+      return robot.tracking() || robot.newest().state == client::State::coasting;
+    })) << robots_told();
     std::this_thread::sleep_for(20ms);
   }
   EXPECT_EQ(segments(), before);
@@ -117,17 +130,17 @@ TEST_F(Clocks, OfCeilingLidarsAreCorrectedOrLeftOutAndToldEverywhere) {
   site_->spoil.lidar_ahead_ns[0] = from_seconds(37);
   EXPECT_TRUE(comes_to_hold([&] { return server_->lidar(0).state == wire::LidarState::clock_off; }, 3s));
   EXPECT_TRUE(comes_to_hold([&] { return corrected(0, 37); }, 6s)) << server_log();
-  const std::string one = doctor().out;
-  EXPECT_THAT(one,
-              ContainsRegex("warn  edge: ceiling0 has a clock 3[67]\\.[0-9]+ s ahead of the site's, which is"));
-  EXPECT_THAT(one, HasSubstr("ok    edge: ceiling1 ok at"));
   {  // at twice the pace of time
     const std::jthread drift([&](const std::stop_token& stop) {
       for (; !stop.stop_requested(); std::this_thread::sleep_for(20ms))
         site_->spoil.lidar_ahead_ns[2] += from_ms(20);
     });
     EXPECT_TRUE(comes_to_hold([&] { return server_->lidar(2).state == wire::LidarState::clock_off; }, 5s));
-    EXPECT_THAT(doctor().out, HasSubstr("FAIL  edge: ceiling2 has another clock, "));
+    const std::string told = doctor().out;
+    EXPECT_THAT(told,
+                ContainsRegex("warn  edge: ceiling0 has a clock 3[67]\\.[0-9]+ s ahead of the site's, which"));
+    EXPECT_THAT(told, HasSubstr("ok    edge: ceiling1 ok at"));
+    EXPECT_THAT(told, HasSubstr("FAIL  edge: ceiling2 has another clock, "));
     EXPECT_EQ(metric(server_->page("/metrics"), "liloc_lidar_up{lidar=\"ceiling2\"}"), 0);
   }
   site_->spoil.lidar_ahead_ns[2] = 0;
@@ -143,8 +156,7 @@ TEST_F(Clocks, OfCeilingLidarsAreCorrectedOrLeftOutAndToldEverywhere) {
   }
   EXPECT_THAT(two, AllOf(HasSubstr("ok    edge: ceiling2 ok at"), HasSubstr("ok    edge: ceiling3 ok at")));
   EXPECT_NEAR(metric(metrics, "liloc_lidar_clock_offset_seconds{lidar=\"ceiling2\"}"), 0, 0.2);
-  EXPECT_TRUE(all_located()) << robots_told();
-  for (std::size_t i = 0; i < robots_.size(); ++i) EXPECT_LT(error_m(i), 0.3);
+  EXPECT_TRUE(comes_to_hold(all_right, soon())) << robots_told();
 }
 
 }  // namespace

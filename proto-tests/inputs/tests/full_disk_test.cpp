@@ -37,7 +37,7 @@ TEST_F(LiveSite, ATraceOnAFullDiskIsToldAtOnceAndStaysWhole) {
   std::string client = LILOC_CLIENT;
   for (const std::string& argument : device(0)) client += " " + argument;
   const Outcome told = run_program(
-      "unshare", fmt::format("{} sh -c '{} && {{ timeout -s INT 6 {} --trace {}; cp -a {} {}; }}'", own, mount,
+      "unshare", fmt::format("{} sh -c '{} && {{ timeout -s INT 5 {} --trace {}; cp -a {} {}; }}'", own, mount,
                              client, (disk / "trace").string(), (disk / "trace").string(), left.string()));
   const std::string full = "No space left on device";
   const auto first = told.out.find(full), stopping = told.out.find("stopping");

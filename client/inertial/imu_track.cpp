@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "client/inertial/imu_range.hpp"
-#include "common/base/log.hpp"
+#include "common/base/limited_log.hpp"
 
 namespace liloc {
 namespace {
@@ -77,7 +77,7 @@ Status ImuTrack::check(const ImuSample& sample) {
 
 /// What is known of the device stays; what happened between the two clocks is not.
 void ImuTrack::set_clock(StampNs by_ns) {
-  if (by_ns < 0) log::warning("IMU: its clock was set back by {:.1f} s", -to_seconds(by_ns));
+  if (by_ns < 0) log::limited(clock_lines_, "IMU: its clock was set back by {:.1f} s", -to_seconds(by_ns));
   kept_.clear();
   halves_.clock_set();
   first_ns_ += by_ns;

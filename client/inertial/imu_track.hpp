@@ -7,6 +7,7 @@
 #include "client/inertial/imu_buffer.hpp"
 #include "client/inertial/imu_driver.hpp"
 #include "client/inertial/sample_stamps.hpp"
+#include "common/base/line_limit.hpp"
 
 namespace liloc {
 
@@ -90,6 +91,7 @@ class ImuTrack {
 
   ImuTrackOptions options_;
   StampWatch stamps_{{"IMU", kClosestSampleNs, kJudgedSamples}};
+  LineLimit clock_lines_;  ///< two drivers on one topic take turns
   ImuBuffer kept_;
   bool started_ = false;
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero(), up_ = Eigen::Vector3d::Zero();

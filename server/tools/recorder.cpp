@@ -95,12 +95,13 @@ Status Recorder::add_device(wire::Dispatcher& dispatcher, const DeviceInfo& devi
     return subscribed;
   if (!device.T_imu_sensor) return {};
   if (Status opened = one.imu.open(folder / "imu.csv"); !opened) return opened;
-  one.has_imu = true;
   return wire::subscribe_imu(dispatcher, device.id, [this, &one](const Result<ImuSample>& sample) {
     if (!sample) return refuse(one, sample.error().message);
-    if (!one.imu.add(*sample)) return refuse(one, "an IMU sample whose stamp does not rise");
+    const bool taken = one.imu.add(*sample);
+    if (!taken && one.imu.written()) return refuse(one, "an IMU sample whose stamp does not rise");
     const std::scoped_lock lock(mutex_);
     one.recorded.samples = one.imu.rows();
+    if (trouble_) trouble_ = one.imu.written();
   });
 }
 
@@ -158,10 +159,8 @@ std::map<std::string, Recorded> Recorder::recorded() const {
 Status Recorder::finish() {
   waiting_.close();
   writers_.clear();  // joins: each drains the queue first
-  Status done = trouble();
+  const Status done = trouble();
   for (auto& [id, sensor] : sensors_) {
-    if (sensor.has_imu)
-      if (const Status closed = sensor.imu.close(); !closed && done) done = closed;
     std::error_code ignored;
     if (sensor.recorded.frames == 0 && sensor.folder.parent_path().filename() == "devices")
       fs::remove_all(sensor.folder, ignored);

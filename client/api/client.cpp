@@ -72,7 +72,7 @@ Network::Callbacks Client::Impl::network_callbacks() {
   callbacks.on_status = [this](const wire::ServerStatus& status) {
     session->add_server(status.server_id, status.codecs);
   };
-  callbacks.tasks.emplace_back(std::chrono::seconds(1), [this] { look(); });
+  callbacks.look = [this] { look(); };
   callbacks.tasks.emplace_back(kOverdueEvery, [this] {
     if (const auto reply = session->add_overdue_reply(); reply && on_reply) on_reply(to_public(*reply));
   });

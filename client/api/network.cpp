@@ -1,8 +1,10 @@
 #include "client/api/network.hpp"
 
 #include <condition_variable>
+#include <utility>
 
 #include "common/base/log.hpp"
+#include "common/wire/dds/shared_domain.hpp"
 
 namespace liloc::client {
 namespace {
@@ -11,21 +13,33 @@ constexpr auto kLookEvery = std::chrono::milliseconds(500);  // at the address; 
 
 }  // namespace
 
-Network::Network(wire::DomainOptions seat, std::string client_id, Callbacks callbacks)
+Network::Network(wire::DomainOptions seat, std::string client_id, Callbacks callbacks,
+                 wire::AddressWatch::Addresses addresses)
     : seat_(std::move(seat)),
       client_id_(std::move(client_id)),
       callbacks_(std::move(callbacks)),
-      addresses_([interface = seat_.interface] { return wire::addresses_of(interface); }) {}
+      addresses_(addresses ? std::move(addresses)
+                           : [interface = seat_.interface] { return wire::addresses_of(interface); }) {}
 
 Network::~Network() {
   stop();
 }
 
 Result<std::unique_ptr<Network>> Network::join(wire::DomainOptions seat, std::string client_id,
-                                               Callbacks callbacks) {
-  std::unique_ptr<Network> network(new Network(std::move(seat), std::move(client_id), std::move(callbacks)));
+                                               Callbacks callbacks, wire::AddressWatch::Addresses addresses) {
+  std::unique_ptr<Network> network(
+      new Network(std::move(seat), std::move(client_id), std::move(callbacks), std::move(addresses)));
   if (const Status opened = network->open(); !opened) return tl::unexpected(opened.error());
   return network;
+}
+
+wire::ClientCallbacks Network::link_callbacks() {
+  wire::ClientCallbacks link = callbacks_.link;
+  link.on_server = [this](bool matched) {
+    reached_ = matched;
+    if (callbacks_.link.on_server) callbacks_.link.on_server(matched);
+  };
+  return link;
 }
 
 Status Network::open() {
@@ -34,7 +48,7 @@ Status Network::open() {
   if (!participant) return tl::unexpected(participant.error());
   auto dispatcher = wire::Dispatcher::create(*participant);
   if (!dispatcher) return tl::unexpected(dispatcher.error());
-  auto link = wire::ClientLink::create(**dispatcher, client_id_, callbacks_.link, session_);
+  auto link = wire::ClientLink::create(**dispatcher, client_id_, link_callbacks(), session_);
   if (!link) return tl::unexpected(link.error());
   // What cannot be read of a status says nothing of the codes; replies tell of another version.
   const Status subscribed =
@@ -74,7 +88,8 @@ void Network::keep(const std::stop_token& stop) {
   std::unique_lock lock(mutex);
   while (!stop.stop_requested()) {
     wake.wait_for(lock, stop, kLookEvery, [] { return false; });
-    if (addresses_.changed() || away_) rejoin();
+    if (addresses_.changed(reached_) || away_) rejoin();
+    if (callbacks_.look) wire::guarded(callbacks_.look);
   }
 }
 
@@ -82,7 +97,13 @@ void Network::rejoin() {
   if (!away_) {
     log::warning("{}: the address on {} has changed: joining the network anew", client_id_, seat_.interface);
     leave();
+    reached_ = false;
     if (callbacks_.link.on_server) callbacks_.link.on_server(false);
+    if (wire::domain_is_held(seat_.domain) && !std::exchange(held_told_, true))
+      log::error(
+          "{}: other DDS participants of this process keep domain {} on the address before: start the program "
+          "again",
+          client_id_, seat_.domain);
   }
   const Status opened = open();
   if (!opened && !away_) log::warning("{}: {}; it is tried again", client_id_, opened.error().message);

@@ -15,6 +15,10 @@ constexpr auto kFirst = 5s, kAgain = 10s;  // that the intrinsics are missing is
 
 }  // namespace
 
+Daemon::Daemon(DaemonOptions options)
+    : options_(std::move(options)),
+      addresses_([interface = options_.client.network_interface] { return wire::addresses_of(interface); }) {}
+
 Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, const std::function<bool()>& give_up) {
   std::unique_ptr<Daemon> daemon(new Daemon(std::move(options)));
   if (const Status ok = daemon->join(); !ok) return tl::unexpected(ok.error());
@@ -72,6 +76,7 @@ Status Daemon::find_camera(const std::function<bool()>& give_up) {
   (*dispatcher)->start();
   auto told = std::chrono::steady_clock::now() - kAgain + kFirst;
   for (bool done = false; !done && !give_up(); std::this_thread::sleep_for(20ms)) {
+    if (const Status same = check_address(); !same) return same;
     const std::scoped_lock lock(mutex);
     done = found.has_value();
     if (done || std::chrono::steady_clock::now() - told < kAgain) continue;
@@ -123,6 +128,17 @@ void Daemon::diagnose() {
   const client::Stats stats = client_->stats();
   const bool silent = std::exchange(frames_diagnosed_, stats.frames) == stats.frames;
   ros_->diagnose(client_->newest(), stats, silent);
+}
+
+Status Daemon::check_address() {
+  // A start anew costs the pose: where a server was reached at all the addresses were right.
+  reached_ = reached_ || (client_ && client_->newest().server_connected);
+  if (!addresses_.changed(reached_)) return {};
+  return fail(
+      "{}: the address on {} has changed, and DDS tells the one before for ever: ending, for systemd to start "
+      "this "
+      "daemon anew",
+      options_.client.id, options_.client.network_interface);
 }
 
 std::string Daemon::summary() const {

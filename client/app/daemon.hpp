@@ -6,6 +6,7 @@
 #include "client/app/options.hpp"
 #include "client/app/ros_bridge.hpp"
 #include "client/app/sensor_feed.hpp"
+#include "common/wire/dds/address_watch.hpp"
 #include "common/wire/dds/dispatcher.hpp"
 
 namespace liloc {
@@ -21,13 +22,16 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
+  /// To be asked twice a second. Error: the interface's address has changed (AddressWatch). The sensors hold
+  /// the domain, so that the client cannot join it anew: the daemon has to be started again.
+  [[nodiscard]] Status check_address();
   /// One line for the log: state, rates, latencies.
   [[nodiscard]] std::string summary() const;
   /// First the sensors fall silent, then the client finishes what it has and writes its trace. Idempotent.
   [[nodiscard]] Status stop();
 
  private:
-  explicit Daemon(DaemonOptions options) : options_(std::move(options)) {}
+  explicit Daemon(DaemonOptions options);
   [[nodiscard]] Status join();
   [[nodiscard]] Status find_camera(const std::function<bool()>& give_up);
   [[nodiscard]] Status open_client();
@@ -35,6 +39,8 @@ class Daemon {
   void diagnose();
 
   DaemonOptions options_;
+  wire::AddressWatch addresses_;
+  bool reached_ = false;  ///< a server was
   std::optional<wire::Participant> participant_;
   std::unique_ptr<RosBridge> ros_;
   std::unique_ptr<client::Client> client_;

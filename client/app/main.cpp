@@ -1,4 +1,5 @@
-// liloc-client: exit code 0 after an ordered stop, 1 when it fails, 2 for bad usage or a bad device file.
+// liloc-client: exit code 0 after an ordered stop, 1 when it fails or has to be started anew
+// (Daemon::check_address), 2 for bad usage or a bad device file.
 #include <chrono>
 #include <exception>
 
@@ -11,7 +12,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kSummaryEvery = 10s;  // by hand
+constexpr auto kLookEvery = 500ms;  // at the address; by hand
+constexpr int kSummaryEvery = 20;   // looks: each 10 s; by hand
+
+/// Until a stop signal. Errors: it has to be started anew.
+Status serve(Daemon& daemon, const StopSignals& signals) {
+  for (int looks = 1; signals.within(kLookEvery) == 0; ++looks) {
+    if (const Status same = daemon.check_address(); !same) return same;
+    if (looks % kSummaryEvery == 0) log::debug("{}", daemon.summary());
+  }
+  return {};
+}
 
 int run(int argc, char** argv) {
   const StopSignals signals;
@@ -35,13 +46,13 @@ int run(int argc, char** argv) {
   if (!*daemon) return 0;  // stopped while it waited for the camera
   log::info("{} listens on domain {}, interface {}", options->client.id, options->client.domain,
             options->client.network_interface);
-  while (signals.within(kSummaryEvery) == 0) log::debug("{}", (*daemon)->summary());
+  const Status served = serve(**daemon, signals);
+  if (!served) log::error("{}", served.error().message);
   log::info("stopping");
   const Status stopped = (*daemon)->stop();
   log::info("{}", (*daemon)->summary());
-  if (stopped) return 0;
-  log::error("{}", stopped.error().message);
-  return 1;
+  if (!stopped) log::error("{}", stopped.error().message);
+  return served && stopped ? 0 : 1;
 }
 
 }  // namespace

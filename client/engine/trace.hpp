@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "client/engine/engine.hpp"
-#include "client/engine/row_file.hpp"
+#include "common/base/row_file.hpp"
 
 namespace liloc {
 

@@ -1,12 +1,13 @@
 #pragma once
 #include <algorithm>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "client/inertial/inertial.hpp"
+#include "client/inertial/imu_buffer.hpp"
+#include "client/inertial/imu_driver.hpp"
 #include "client/inertial/sample_stamps.hpp"
+#include "common/base/line_limit.hpp"
 
 namespace liloc {
 
@@ -36,7 +37,7 @@ class ImuTrack {
   /// The stamps so far, and from now on, are ahead by so much: it is taken off.
   void take_off(StampNs ahead_ns);
   /// The newest sample's force is an older message's, as no newer ones come.
-  [[nodiscard]] bool stale() const { return !entries_.empty() && entries_.back().stale; }
+  [[nodiscard]] bool stale() const { return !kept_.empty() && kept_.newest().stale; }
   /// What was known of bias and gravity is replaced; `up_imu`: at the newest sample, zero where it is not
   /// known.
   void begin_anew(const Eigen::Vector3d& bias_rad_s, const Eigen::Vector3d& up_imu);
@@ -44,9 +45,9 @@ class ImuTrack {
   /// Empty before any sample.
   [[nodiscard]] std::optional<StampNs> newest_ns() const;
   /// There must be one.
-  [[nodiscard]] const ImuSample& newest() const { return entries_.back().raw; }
+  [[nodiscard]] const ImuSample& newest() const { return kept_.newest().raw; }
   /// Some of what is kept is older and some newer.
-  [[nodiscard]] bool surrounds(StampNs stamp_ns) const;
+  [[nodiscard]] bool surrounds(StampNs stamp_ns) const { return kept_.surrounds(stamp_ns); }
   /// True when samples surround the span closely enough to integrate over it.
   [[nodiscard]] bool covers(StampNs from_ns, StampNs to_ns) const;
   /// R_from_to of the IMU by the gyro. The span must be covered.
@@ -57,7 +58,9 @@ class ImuTrack {
                                       const Eigen::Vector3d& velocity_m_s) const;
   /// As they came (in m/s^2), for preintegration; the first and the last lie at the span's ends. The span must
   /// be covered.
-  [[nodiscard]] std::vector<ImuSample> samples(StampNs from_ns, StampNs to_ns) const;
+  [[nodiscard]] std::vector<ImuSample> samples(StampNs from_ns, StampNs to_ns) const {
+    return kept_.samples(from_ns, to_ns);
+  }
   /// Unit vector against gravity in IMU axes at a stamp within the last `keep_seconds`; empty where no sample
   /// is near, or the accelerometer says nothing.
   [[nodiscard]] std::optional<Eigen::Vector3d> up(StampNs stamp_ns) const;
@@ -76,40 +79,25 @@ class ImuTrack {
   [[nodiscard]] std::string problem(StampNs now_ns) const;
 
  private:
-  struct Entry {
-    ImuSample raw;
-    Eigen::Vector3d up;
-    bool stale = false;  ///< its force is an older message's, which stopped coming
-  };
-  struct Halves {
-    Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< newest that was told
-    StampNs force_ns = 0;                                  ///< its stamp; 0: none was told
-    StampNs since_ns = 0, newest_ns = 0;                   ///< of samples with zeros for the accelerometer
-    bool now = false;                                      ///< the newest sample was one
-  };
   [[nodiscard]] Status check(const ImuSample& sample);
-  [[nodiscard]] bool merge(ImuSample& sample);
   void set_clock(StampNs by_ns);
   void find_unit(const ImuSample& sample);
   [[nodiscard]] bool clips(const ImuSample& sample) const;
-  [[nodiscard]] bool force_clips(const Eigen::Vector3d& force, const Eigen::Vector3d& last) const;
   [[nodiscard]] bool doubtful(StampNs stamp_ns) const;
   void calibrate(const ImuSample& sample);
   void end_calibration(const char* why);
   void follow(const ImuSample& sample, double dt_s, bool stale);
-  [[nodiscard]] std::size_t first_after(StampNs stamp_ns) const;
-  [[nodiscard]] std::vector<InertialSample> span(StampNs from_ns, StampNs to_ns, bool smooth) const;
+  [[nodiscard]] ImuBuffer::Offsets offsets() const { return {bias_, gravity_m_s2_}; }
 
   ImuTrackOptions options_;
   StampWatch stamps_{{"IMU", kClosestSampleNs, kJudgedSamples}};
-  std::deque<Entry> entries_;
+  LineLimit clock_lines_;  ///< two drivers on one topic take turns
+  ImuBuffer kept_;
   bool started_ = false;
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero(), up_ = Eigen::Vector3d::Zero();
   double gravity_m_s2_ = 9.81;
-  double unit_ = 1;  ///< that turns the accelerometer's numbers into m/s^2
-  double raw_force_sum_ = 0;
-  int raw_count_ = 0;
-  Halves halves_;
+  ForceUnit unit_;
+  SplitMessages halves_;
   StampNs ahead_ns_ = 0;    ///< taken off the stamps
   StampNs clipped_ns_ = 0;  ///< of the newest clipped sample
   StampNs wild_ns_ = 0;     ///< of the newest that no such sensor measures

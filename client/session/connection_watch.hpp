@@ -20,7 +20,7 @@ class ConnectionWatch {
   };
   ConnectionWatch(Names names, Time now);
 
-  /// To be called about once a second. Tells a server that comes or goes, and each problem at most every ten
+  /// To be called once or twice a second. Tells a server that comes or goes, and each problem at most every ten
   /// seconds.
   void look(const SessionStats& stats, bool connected, Time now);
   /// As of the last look, for people; empty: nothing was noticed. What comes first matters most.

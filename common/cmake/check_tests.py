@@ -15,8 +15,6 @@ COVERED = {
         "seen through the C API alone"),
     "client/api/c_api_structs.hpp": ("client/api/tests/c_api_fields_test.cpp",
         "field by field, for all structs of the C API"),
-    "client/api/network.hpp": ("client/api/tests/client_test.cpp",
-        "a client is on its network; one that roams: proto-tests/faults"),
     "client/api/public_types.hpp": ("client/api/tests/client_test.cpp",
         "what the client hands out and takes"),
     "client/app/given_options.hpp": ("client/app/tests/options_test.cpp",

@@ -9,11 +9,13 @@ it may hold. Arrays keep their names and order: batch norms are folded when the 
 import argparse
 import collections
 import json
+import os
 import pathlib
 import pickle
 import struct
 import sys
 import types
+import zipfile
 
 USED = (".kernel", ".bias", ".bn.weight", ".bn.bias", ".bn.running_mean", ".bn.running_var")
 
@@ -57,14 +59,31 @@ def safe_pickle():
     return module
 
 
+def refuse_script(path):
+    """TorchScript is code: torch.load hands it to torch.jit.load, and no unpickler of ours is asked."""
+    raise BadInput(f"{path}: is a TorchScript program, which could run anything; save its state_dict() by torch.save")
+
+
+def is_script(path):
+    """Whether torch.load would take the file for one: a zip with constants.pkl."""
+    if not zipfile.is_zipfile(path):
+        return False
+    with zipfile.ZipFile(path) as archive:
+        return any(pathlib.PurePosixPath(name).name == "constants.pkl" for name in archive.namelist())
+
+
 def load(path):
+    if is_script(path):
+        refuse_script(path)
+    import torch.jit
     import torch.serialization
-    safe, usual = safe_pickle(), torch.serialization.pickle
+    safe, usual, usual_jit = safe_pickle(), torch.serialization.pickle, torch.jit.load
     torch.serialization.pickle = safe  # PyTorch 1.13 overlooks pickle_module
+    torch.jit.load = lambda *_, **__: refuse_script(path)  # for a zip that PyTorch reads otherwise than Python
     try:
         return torch.load(str(path), map_location="cpu", pickle_module=safe, weights_only=False)
     finally:
-        torch.serialization.pickle = usual
+        torch.serialization.pickle, torch.jit.load = usual, usual_jit
 
 
 def read_checkpoint(path):
@@ -73,6 +92,8 @@ def read_checkpoint(path):
         raise BadInput(f"{path}: no such file")
     try:
         checkpoint = load(path)
+    except BadInput:
+        raise
     except Exception as error:  # pickle, zip and torch have dozens of their own
         raise BadInput(f"{path}: is no checkpoint of PyTorch: {str(error).splitlines()[0] if str(error) else error!r}")
     if not isinstance(checkpoint, dict):
@@ -103,16 +124,23 @@ def used_arrays(path, state):
 
 
 def write_safetensors(path, arrays, about):
+    """Appears whole or not at all: what stood there stays until all is written."""
     header, begin = {"__metadata__": about}, 0
     for name, (shape, data) in arrays.items():
         header[name] = {"dtype": "F32", "shape": shape, "data_offsets": [begin, begin + len(data)]}
         begin += len(data)
     text = json.dumps(header, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 8)
-    with open(path, "wb") as file:
-        file.write(struct.pack("<Q", len(text)) + text)
-        for _, data in arrays.values():
-            file.write(data)
+    part = path.with_name(f".{path.name}.part")
+    try:
+        with open(part, "wb") as file:
+            file.write(struct.pack("<Q", len(text)) + text)
+            for _, data in arrays.values():
+                file.write(data)
+        os.replace(part, path)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
 
 
 def convert(checkpoint, weights, voxel_m):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "common/base/parallel.hpp"
 
@@ -28,7 +29,8 @@ BlockPairs by_offset(const std::vector<Neighbor>& found, const std::vector<std::
   return result;
 }
 
-KernelMap joined(const std::vector<BlockPairs>& blocks, std::size_t inputs, std::size_t outputs,
+/// Each block goes as soon as its pairs are in the map, so that all of them are never held twice.
+KernelMap joined(std::vector<BlockPairs>&& blocks, std::size_t inputs, std::size_t outputs,
                  std::size_t volume) {
   KernelMap map;
   map.inputs = inputs;
@@ -38,7 +40,8 @@ KernelMap joined(const std::vector<BlockPairs>& blocks, std::size_t inputs, std:
   for (const BlockPairs& block : blocks) total += block.pairs.size();
   map.pairs.reserve(total);
   map.begins.reserve(blocks.size() * volume + 1);
-  for (const BlockPairs& block : blocks) {
+  for (BlockPairs& filled : blocks) {
+    const BlockPairs block = std::move(filled);
     const auto base = static_cast<std::uint32_t>(map.pairs.size());
     map.pairs.insert(map.pairs.end(), block.pairs.begin(), block.pairs.end());
     for (std::size_t k = 1; k <= volume; ++k) map.begins.push_back(base + block.begins[k]);
@@ -61,7 +64,7 @@ KernelMap map_of(const VoxelSet& input, const VoxelSet& output, int scale, int w
     }
     blocks[b] = by_offset(found, outputs, volume);
   });
-  return joined(blocks, input.size(), output.size(), volume);
+  return joined(std::move(blocks), input.size(), output.size(), volume);
 }
 
 }  // namespace
@@ -92,7 +95,7 @@ KernelMap transposed(const KernelMap& map) {
       outputs.resize(begins[row + 1] - begins[begin], static_cast<std::uint32_t>(row));
     blocks.push_back(by_offset(found, outputs, map.volume));
   }
-  return joined(blocks, map.outputs, map.inputs, map.volume);
+  return joined(std::move(blocks), map.outputs, map.inputs, map.volume);
 }
 
 }  // namespace liloc::learned

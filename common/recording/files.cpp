@@ -1,5 +1,7 @@
 #include "common/recording/files.hpp"
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <system_error>
 
@@ -30,12 +32,15 @@ Status write_file(const fs::path& file, std::string_view bytes) {
   if (error)
     return fail("{}: its folder cannot be made: {}; choose another place", file.string(), error.message());
   const fs::path part = file.parent_path() / ("." + file.filename().string() + ".part");
+  errno = 0;  // streams say that they failed, the system says why
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
   if (!out) {
+    const std::string reason = errno == 0 ? "the stream failed" : std::strerror(errno);
     fs::remove(part, error);
-    return fail("{}: cannot be written; check the folder's permissions and free space", file.string());
+    return fail("{}: cannot be written: {}; check the folder's permissions and free space", file.string(),
+                reason);
   }
   fs::rename(part, file, error);
   if (!error) return {};

@@ -36,7 +36,7 @@ std::string seconds_text(StampNs stamp_ns) {
 
 std::string imu_row(const ImuSample& sample) {
   const auto &w = sample.angular_velocity_rad_s, &a = sample.specific_force_m_s2;
-  return fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", sample.stamp_ns, w.x(), w.y(), w.z(),
+  return fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}", sample.stamp_ns, w.x(), w.y(), w.z(),
                      a.x(), a.y(), a.z());
 }
 

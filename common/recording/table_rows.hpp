@@ -56,8 +56,8 @@ constexpr std::int64_t kNsInSecond = 1'000'000'000;
 /// The reverse, with nine decimals.
 [[nodiscard]] std::string seconds_text(StampNs stamp_ns);
 
-constexpr std::string_view kImuHead = "#timestamp_ns,wx_rad_s,wy_rad_s,wz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n";
-/// One line of imu.csv.
+constexpr std::string_view kImuHead = "#timestamp_ns,wx_rad_s,wy_rad_s,wz_rad_s,ax_m_s2,ay_m_s2,az_m_s2";
+/// One line of imu.csv, without its end.
 [[nodiscard]] std::string imu_row(const ImuSample& sample);
 
 }  // namespace liloc

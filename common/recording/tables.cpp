@@ -49,8 +49,8 @@ Result<std::vector<StampedPose>> read_tum(const std::filesystem::path& file) {
 }
 
 Status write_imu(const std::filesystem::path& file, const std::vector<ImuSample>& samples) {
-  std::string text(kImuHead);
-  for (const auto& sample : samples) text += imu_row(sample);
+  std::string text = std::string(kImuHead) + "\n";
+  for (const auto& sample : samples) text += imu_row(sample) + "\n";
   return write_file(file, text);
 }
 

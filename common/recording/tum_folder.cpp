@@ -59,8 +59,8 @@ bool is_tum_folder(const fs::path& folder) {
   return fs::exists(folder / "depth.txt", error) && !fs::exists(folder / "site.json", error);
 }
 
-Result<std::size_t> tum_to_device(const fs::path& tum, const fs::path& out, DeviceInfo device,
-                                  const std::function<bool()>& stopped) {
+Conversion<std::size_t> tum_to_device(const fs::path& tum, const fs::path& out, DeviceInfo device,
+                                      const std::function<bool()>& stopped) {
   const auto frames = list_frames(tum);
   if (!frames) return tl::unexpected(frames.error());
   device.camera.depth_scale_m = kTumDepthScale_m;
@@ -71,36 +71,39 @@ Result<std::size_t> tum_to_device(const fs::path& tum, const fs::path& out, Devi
     const auto image = read_depth(frame, device.camera);
     if (!image) return tl::unexpected(image.error());
     if (const Status written = write_depth(folder / "depth", *image); !written)
-      return tl::unexpected(written.error());
+      return unwritten(written.error());
   }
   std::error_code error;
   if (fs::exists(tum / "groundtruth.txt", error)) {
     const auto truth = read_tum(tum / "groundtruth.txt");
     if (!truth) return tl::unexpected(truth.error());
     if (const Status written = write_tum(folder / "groundtruth.tum", *truth); !written)
-      return tl::unexpected(written.error());
+      return unwritten(written.error());
   }
   if (const Status written = write_device(folder / "device.json", device); !written)
-    return tl::unexpected(written.error());
+    return unwritten(written.error());
   return frames->size();
 }
 
-Status device_to_tum(const DeviceRecording& device, const fs::path& out, const std::function<bool()>& stopped) {
+Conversion<void> device_to_tum(const DeviceRecording& device, const fs::path& out,
+                               const std::function<bool()>& stopped) {
   std::string table = "# depth maps, 5000 units a metre\n# timestamp filename\n";
   for (const DepthFile& frame : device.depth) {
     if (stopped && stopped()) return fail("{}: stopped by a signal", out.string());
     auto image = read_depth(frame, device.info.camera);
     if (!image) return tl::unexpected(image.error());
     rescale(*image, device.info.camera.depth_scale_m / kTumDepthScale_m);
-    if (Status written = write_depth(out / "depth", *image); !written) return written;
+    if (const Status written = write_depth(out / "depth", *image); !written) return unwritten(written.error());
     fmt::format_to(std::back_inserter(table), "{} depth/{}.png\n", seconds_text(frame.stamp_ns),
                    frame.stamp_ns);
   }
   const auto truth = read_ground_truth(device);
   if (!truth) return tl::unexpected(truth.error());
   if (!truth->empty())
-    if (Status written = write_tum(out / "groundtruth.txt", *truth); !written) return written;
-  return write_file(out / "depth.txt", table);
+    if (const Status written = write_tum(out / "groundtruth.txt", *truth); !written)
+      return unwritten(written.error());
+  if (const Status written = write_file(out / "depth.txt", table); !written) return unwritten(written.error());
+  return {};
 }
 
 }  // namespace liloc

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "common/recording/convert_error.hpp"
 #include "common/recording/recording.hpp"
 
 namespace liloc {
@@ -18,12 +19,12 @@ constexpr double kTumDepthScale_m = 1.0 / 5000;
 /// frames. Errors name file and line: a row that is none, an image elsewhere than in the folder, of another
 /// size, damaged; no frame;
 /// `stopped`, asked at each frame, said so.
-[[nodiscard]] Result<std::size_t> tum_to_device(const std::filesystem::path& tum,
-                                                const std::filesystem::path& out, DeviceInfo device,
-                                                const std::function<bool()>& stopped = {});
+[[nodiscard]] Conversion<std::size_t> tum_to_device(const std::filesystem::path& tum,
+                                                    const std::filesystem::path& out, DeviceInfo device,
+                                                    const std::function<bool()>& stopped = {});
 
 /// The reverse, to the folder `out`; what is farther than 13.1 m does not fit and is left out.
-[[nodiscard]] Status device_to_tum(const DeviceRecording& device, const std::filesystem::path& out,
-                                   const std::function<bool()>& stopped = {});
+[[nodiscard]] Conversion<void> device_to_tum(const DeviceRecording& device, const std::filesystem::path& out,
+                                             const std::function<bool()>& stopped = {});
 
 }  // namespace liloc

@@ -175,6 +175,12 @@ class Credentials(unittest.TestCase):
         self.store = self.store / "elsewhere"
         self.refused(1, "is no keystore; make one", "list")
 
+    def test_names_that_are_one_in_topics_are_refused(self):
+        self.made("device", "robot-1")
+        self.refused(1, "robot-1 has the same topics as robot_1", "device", "robot_1")
+        self.refused(1, "robot-1 has the same topics as robot_1", "lidar", "robot_1")
+        self.made("server", "robot_1")  # a server has none
+
     def test_help_says_what_it_does(self):
         self.assertIn("credentials revoke robot1", self.made("--help"))
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Runs every command of deploy/HANDBOOK.md, in its order, on a simulated site.
+"""Runs every command of deploy/HANDBOOK.md on a simulated site, in its order but for what waits for the installation.
 
 handbook_test.py ROOT BUILD   exit 0: all succeeded; 1: the one that failed is named; 77: not permitted here
 
 In namespaces of its own: what is installed and configured is seen by nobody else, and the network is a loopback of its
-own. `sudo` runs what it is given, `sysctl` changes nothing, and `systemctl` starts what a unit names.
+own. `sudo` runs what it is given, `sysctl` changes nothing, `systemctl` starts what a unit names, and `journalctl` has
+what that says.
 """
 import os
 import pathlib
@@ -16,7 +17,7 @@ import tempfile
 
 SKIPPED = 77
 LIMIT_S = 240
-OVERLAID = ["/etc", "/usr/local", "/var/lib", "/var/log"]
+OVERLAID = ["/etc", "/usr/local", "/var/lib"]
 SUDO = '#!/bin/sh\nexec "$@"\n'
 SYSCTL = '#!/bin/sh\ntest "$*" = --system\n'
 SYSTEMCTL = r"""#!/bin/bash
@@ -36,9 +37,16 @@ if [[ "$verb" == stop || "$verb" == restart ]]; then
   while grep -qs '^State:[[:space:]]*[A-Y]' "/proc/$(cat "$pid")/status"; do sleep 0.05; done
   [[ "$verb" != stop ]] || exit 0
 fi
-mkdir -p /var/lib/liloc
-${command//%i/$instance} >>"/var/log/$unit.log" 2>&1 &
+mkdir -p /var/lib/liloc "$PWD/journal"
+${command//%i/$instance} >>"$PWD/journal/$unit.log" 2>&1 &
 echo $! >"$pid"
+"""
+JOURNALCTL = r"""#!/bin/bash
+# -u UNIT --since TIME; all that the unit has said, as it runs for no longer than the handbook waits.
+set -euo pipefail
+[[ "$1" == -u && "$3" == --since && -n "$4" && $# == 4 ]]
+date --date "$4" >/dev/null
+cat "$PWD/journal/$2.log"
 """
 
 
@@ -76,7 +84,8 @@ def stage(work, root, build):
     subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
     commands = work / "commands"
     commands.mkdir()
-    for name, text in [("sudo", SUDO), ("sysctl", SYSCTL), ("systemctl", SYSTEMCTL)]:
+    for name, text in [("sudo", SUDO), ("sysctl", SYSCTL), ("systemctl", SYSTEMCTL),
+                       ("journalctl", JOURNALCTL)]:
         (commands / name).write_text(text)
         (commands / name).chmod(0o755)
     tree = work / "tree"
@@ -110,7 +119,7 @@ def main():
     status = run(tree, commands, "\n".join(parts))
     if status == 0:
         return 0
-    for log in sorted([*tree.glob("*.log"), *pathlib.Path("/var/log").glob("liloc*.log")]):
+    for log in sorted([*tree.glob("*.log"), *tree.glob("journal/*.log")]):
         print(f"--- {log.name}\n" + "\n".join(log.read_text(errors="replace").splitlines()[-15:]))
     print("handbook: the last command above failed")
     return 1

@@ -88,9 +88,8 @@ int run(const Arguments& arguments) {
     if (!scenario) return complain({"--only: " + scenario.error().message}, kBadUsage);
     chosen.push_back(std::move(*scenario));
   }
-  if (const Status entered = enter_own_namespaces(); !entered) return complain(entered.error(), kNotPermitted);
-  if (const auto probe = BadNetwork::create({"probe"}, 1); !probe)
-    return complain(probe.error(), kNotPermitted);
+  if (const Status may = permitted(); !may) return complain(may.error(), kNotPermitted);
+  if (const Status entered = enter_own_namespaces(); !entered) return complain(entered.error(), kFailed);
   replay::catch_stop_signals();
   return run_all(arguments, chosen);
 }

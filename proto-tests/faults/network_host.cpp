@@ -8,8 +8,10 @@
 #include <sys/ioctl.h>
 #include <sys/mount.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -68,6 +70,22 @@ Status set_addresses(const Control& control, const std::string& address) {
   return set_address(control, SIOCSIFNETMASK, "255.255.255.0");
 }
 
+/// What `permitted` tries, in this order; exit codes of its process count from 1.
+constexpr std::array<const char*, 4> kTried{"namespaces of our own", "mounts of our own", "/dev/net/tun",
+                                            "TAP devices"};
+
+/// The exit code: 0, or which of kTried the system refused.
+int try_all() {
+  const int user = geteuid() == 0 ? 0 : CLONE_NEWUSER;
+  if (unshare(user | CLONE_NEWNS | CLONE_NEWNET) != 0) return 1;
+  if (mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return 2;
+  const int wire = open("/dev/net/tun", O_RDWR | O_CLOEXEC);
+  if (wire < 0) return 3;
+  ifreq tap = about("probe0");
+  tap.ifr_flags = IFF_TAP | IFF_NO_PI;
+  return ioctl(wire, TUNSETIFF, &tap) == 0 ? 0 : 4;
+}
+
 bool write_line(const char* file, const std::string& line) {
   std::ofstream out(file);
   out << line << std::flush;
@@ -75,6 +93,17 @@ bool write_line(const char* file, const std::string& line) {
 }
 
 }  // namespace
+
+Status permitted() {
+  const pid_t child = fork();
+  if (child == 0) _exit(try_all());
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status))
+    return fail("networks of our own: no process to try them in: {}", std::strerror(errno));
+  const auto refused = static_cast<std::size_t>(WEXITSTATUS(status));
+  if (refused == 0) return {};
+  return fail("{} are not permitted here; {}, with the module tun", kTried.at(refused - 1), kRemedy);
+}
 
 Status enter_own_namespaces() {
   const uid_t user = geteuid();

@@ -18,6 +18,11 @@ using Mac = std::array<std::uint8_t, 6>;
 
 inline constexpr char kInterface[] = "lan0";  ///< of every host
 
+/// Whether the system lets this program have networks and mounts that nobody else sees: asked in a process of
+/// its own, by the system's calls alone. Error: it does not; the remedy is in the text. What fails where this
+/// says yes is broken, and no reason to leave a test out.
+[[nodiscard]] Status permitted();
+
 /// To be called before the program's first thread: from now on it may make networks and mounts that nobody else
 /// sees, also where it does not run as root. Error: the system does not permit it; the remedy is in the text.
 [[nodiscard]] Status enter_own_namespaces();

@@ -1,7 +1,6 @@
 #include "proto-tests/faults/players.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <thread>
 
 #include "client/include/liloc/client.hpp"
+#include "proto-tests/load/forked.hpp"
 #include "proto-tests/replay/processes.hpp"
 #include "proto-tests/replay/streams.hpp"
 #include "proto-tests/replay/timeline.hpp"
@@ -156,22 +156,6 @@ void push_all(client::Client& device, const Performance& performance) {
   std::this_thread::sleep_for(std::chrono::duration<double>(kAfter_s));
 }
 
-template <class Row>
-void append(const std::vector<Row>& rows, std::string& bytes) {
-  const std::uint64_t count = rows.size();
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  bytes.append(reinterpret_cast<const char*>(rows.data()), count * sizeof(Row));
-}
-
-template <class Row>
-void take(std::string_view& bytes, std::vector<Row>& rows) {
-  std::uint64_t count = 0;
-  std::memcpy(&count, bytes.data(), sizeof count);
-  rows.resize(count);
-  std::memcpy(rows.data(), bytes.data() + sizeof count, count * sizeof(Row));
-  bytes.remove_prefix(sizeof count + count * sizeof(Row));
-}
-
 }  // namespace
 
 Result<std::string> play_ceiling(const Performance& performance, const wire::DomainOptions& seat) {
@@ -217,18 +201,18 @@ Result<std::string> play_device(const Performance& performance, const wire::Doma
   if (const auto stopped = device.value()->stop(); !stopped) return fail("{}", stopped.error());
   const client::Stats stats = device.value()->stats();
   std::string bytes;
-  append(judge.story.replies, bytes);
-  append(judge.story.frames, bytes);
-  append(std::vector{stats.requests, stats.requests_unsent, stats.requests_unanswered}, bytes);
+  load::append_rows(judge.story.replies, bytes);
+  load::append_rows(judge.story.frames, bytes);
+  load::append_rows(std::vector{stats.requests, stats.requests_unsent, stats.requests_unanswered}, bytes);
   return bytes;
 }
 
 DeviceStory story_from(std::string_view bytes) {
   DeviceStory story;
   std::vector<std::uint64_t> counts;
-  take(bytes, story.replies);
-  take(bytes, story.frames);
-  take(bytes, counts);
+  load::take_rows(bytes, story.replies);
+  load::take_rows(bytes, story.frames);
+  load::take_rows(bytes, counts);
   story.requests = counts[0];
   story.unsent = counts[1];
   story.unanswered = counts[2];

@@ -11,12 +11,18 @@
 namespace liloc::fuzz {
 namespace {
 
+constexpr double kHighest_m = 30;  // that --height takes: the most points
+
+/// Its room, too, as `liloc plan` makes it of the drawing.
 Status check(const Result<plan::Outline>& outline) {
   if (!outline) return tl::unexpected(outline.error());
   const plan::Outline& o = *outline;
   require(o.wall.size() == static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height),
           "the drawing is not of its size");
   require(std::ranges::find(o.wall, 1) != o.wall.end(), "the drawing has no wall");
+  const auto cloud = plan::extruded(o, kHighest_m);
+  if (!cloud) return tl::unexpected(cloud.error());
+  require(!cloud->empty() && cloud->points.front().allFinite(), "the room has no points");
   return {};
 }
 

@@ -2,8 +2,13 @@
 // Work in processes of their own that share what was computed before, and hand bytes back.
 #include <sys/types.h>
 
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "common/base/result.hpp"
 
@@ -33,5 +38,26 @@ class Forked {
   int from_child_;
   double cpu_s_ = 0;
 };
+
+/// What a process hands back, in this program's own layout: rows of plain data.
+template <class Row>
+void append_rows(const std::vector<Row>& rows, std::string& bytes) {
+  static_assert(std::is_trivially_copyable_v<Row>);
+  const std::uint64_t count = rows.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes.append(reinterpret_cast<const char*>(rows.data()), count * sizeof(Row));
+}
+
+/// Puts them after `rows` and takes them off `bytes`, which are of `append_rows` alone.
+template <class Row>
+void take_rows(std::string_view& bytes, std::vector<Row>& rows) {
+  static_assert(std::is_trivially_copyable_v<Row>);
+  std::uint64_t count = 0;
+  std::memcpy(&count, bytes.data(), sizeof count);
+  const std::size_t before = rows.size();
+  rows.resize(before + count);
+  if (count > 0) std::memcpy(rows.data() + before, bytes.data() + sizeof count, count * sizeof(Row));
+  bytes.remove_prefix(sizeof count + count * sizeof(Row));
+}
 
 }  // namespace liloc::load

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -20,26 +19,6 @@ namespace liloc::load {
 namespace {
 
 constexpr double kAfter_s = 5;  // for the last replies
-
-// ---- What processes hand back.
-
-template <class Row>
-void append(const std::vector<Row>& rows, std::string& bytes) {
-  const std::uint64_t count = rows.size();
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  bytes.append(reinterpret_cast<const char*>(rows.data()), count * sizeof(Row));
-}
-
-/// From bytes of `append` alone, in this program's own layout.
-template <class Row>
-void take(std::string_view& bytes, std::vector<Row>& rows) {
-  std::uint64_t count = 0;
-  std::memcpy(&count, bytes.data(), sizeof count);
-  const std::size_t before = rows.size();
-  rows.resize(before + count);
-  std::memcpy(rows.data() + before, bytes.data() + sizeof count, count * sizeof(Row));
-  bytes.remove_prefix(sizeof count + count * sizeof(Row));
-}
 
 // ---- The server, as Linux shows it.
 
@@ -152,8 +131,8 @@ class Run {
       const auto bytes = part.collect();
       if (!bytes) return tl::unexpected(bytes.error());
       std::string_view rest = *bytes;
-      take(rest, outcomes.requests);
-      take(rest, outcomes.devices);
+      take_rows(rest, outcomes.requests);
+      take_rows(rest, outcomes.devices);
       cpu_s += part.cpu_s();
     }
     const auto ceiling_bytes = ceiling_->collect();
@@ -179,8 +158,8 @@ class Run {
     auto forked = Forked::start([this, own]() -> Result<std::string> {
       return play_part(script_, options_, clock_, own, seat_).map([](const Outcomes& outcomes) {
         std::string bytes;
-        append(outcomes.requests, bytes);
-        append(outcomes.devices, bytes);
+        append_rows(outcomes.requests, bytes);
+        append_rows(outcomes.devices, bytes);
         return bytes;
       });
     });

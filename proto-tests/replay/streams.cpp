@@ -2,10 +2,16 @@
 
 #include <algorithm>
 
+#include "common/base/distinct_topics.hpp"
+
 namespace liloc::replay {
 
 Result<Streams> Streams::create(const wire::Participant& participant, const Site& site,
                                 const std::vector<DeviceInfo>& devices) {
+  std::vector<std::string> ids;
+  for (const GlobalLidar& lidar : site.global_lidars) ids.push_back(lidar.id);
+  for (const DeviceInfo& info : devices) ids.push_back(info.id);
+  if (const Status distinct = check_distinct_topics(ids); !distinct) return tl::unexpected(distinct.error());
   Streams streams;
   for (const GlobalLidar& lidar : site.global_lidars) {
     auto depth = wire::DepthPublisher::create(participant, lidar.id, lidar.camera);

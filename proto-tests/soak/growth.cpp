@@ -9,6 +9,7 @@ namespace liloc::soak {
 namespace {
 
 constexpr std::size_t kMostPoints = 300;  // of a slope: 45 000 pairs, a moment
+constexpr double kFloor = 0.1;            // quantile: the least of all may be one odd sample; by hand
 
 double slope_per_s(const std::vector<Sample>& samples) {
   const std::size_t step = std::max<std::size_t>(1, samples.size() / kMostPoints);
@@ -36,10 +37,9 @@ Trend trend_of(const std::vector<Sample>& samples, double from_s) {
   if (judged.size() < 3) return {};
   const double begin_s = judged.front().at_s, end_s = judged.back().at_s, third_s = (end_s - begin_s) / 3;
   Trend trend;
-  const std::vector<double> first = between(judged, begin_s, begin_s + third_s);
-  trend.first = median(first);
-  trend.spread = quantile(first, 0.75) - quantile(first, 0.25);
-  trend.last = median(between(judged, end_s - third_s, end_s));
+  trend.third_s = third_s;
+  trend.first = quantile(between(judged, begin_s, begin_s + third_s), kFloor);
+  trend.last = quantile(between(judged, end_s - third_s, end_s), kFloor);
   trend.slope_per_h = 3600 * slope_per_s(judged);
   return trend;
 }

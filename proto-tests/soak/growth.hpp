@@ -8,9 +8,10 @@ struct Sample {
   double at_s = 0, value = 0;
 };
 
+/// A leak lifts the floor; what comes and goes with the load stands on it.
 struct Trend {
-  double first = 0, last = 0;  ///< medians of the first and of the last third
-  double spread = 0;           ///< of the first third: between its quartiles
+  double first = 0, last = 0;  ///< floors of the first and of the last third: what a tenth of it lies below
+  double third_s = 0;          ///< how long these last
   double slope_per_h = 0;      ///< Theil and Sen's: the median slope of all pairs; outliers do not move it
   [[nodiscard]] double growth() const { return last - first; }
 };

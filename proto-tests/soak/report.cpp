@@ -25,7 +25,6 @@ nlohmann::ordered_json to_object(const Trend& trend) {
   return {{"first", trend.first},
           {"last", trend.last},
           {"growth", trend.growth()},
-          {"spread", trend.spread},
           {"slope_per_h", trend.slope_per_h}};
 }
 
@@ -38,6 +37,21 @@ double share_located(const std::vector<Visit>& visits, double from_s, std::size_
       if (visit.located()) ++located;
     }
   return count == 0 ? 0 : static_cast<double>(located) / static_cast<double>(count);
+}
+
+void judge_growth(SoakReport& report) {
+  for (const ProcessReport& process : report.processes)
+    for (const Figure& figure : figures_of(process))
+      if (figure.trend.growth() > figure.most)
+        report.failures.push_back(fmt::format("{}: {} grew from {:.1f} to {:.1f}{}; {:.1f} more are allowed",
+                                              process.name, figure.name, figure.trend.first, figure.trend.last,
+                                              figure.unit, figure.most));
+}
+
+/// Neither passed nor failed: null.
+nlohmann::ordered_json verdict_of(const SoakReport& report) {
+  if (report.failures.empty() && !report.judged) return nullptr;
+  return report.failures.empty();
 }
 
 }  // namespace
@@ -55,12 +69,10 @@ void add_visits(const std::vector<Visit>& visits, SoakReport& report) {
 }
 
 void judge(SoakReport& report) {
-  for (const ProcessReport& process : report.processes)
-    for (const Figure& figure : figures_of(process))
-      if (figure.trend.growth() > figure.most + figure.trend.spread)
-        report.failures.push_back(fmt::format("{}: {} grew from {:.1f} to {:.1f}{}; {:.1f} more are allowed",
-                                              process.name, figure.name, figure.trend.first, figure.trend.last,
-                                              figure.unit, figure.most + figure.trend.spread));
+  report.judged = !report.processes.empty() && std::ranges::all_of(report.processes, [](const auto& process) {
+    return process.memory_mb.third_s >= kLeastThird_s;
+  });
+  if (report.judged) judge_growth(report);
   if (report.answered == 0) report.failures.emplace_back("server: it answered nobody");
   if (report.silent_restarts > 0)
     report.failures.push_back(fmt::format("standby: {} of {} restarted servers answered nobody",
@@ -96,14 +108,15 @@ std::string to_json(const SoakReport& r) {
                                        {"located_share", r.located_share},
                                        {"last_located_share", r.last_located_share},
                                        {"log_kb_per_min", r.log_kb_per_min},
-                                       {"passed", r.failures.empty()},
+                                       {"judged", r.judged},
+                                       {"passed", verdict_of(r)},
                                        {"why", r.failures}};
   return json.dump(2) + "\n";
 }
 
 std::string to_table(const SoakReport& r) {
   std::string table = fmt::format(
-      "First and last third of {:.0f} s after {:.0f} s of warm-up; memory is a process's own.\n"
+      "Floors of the first and last third of {:.0f} s after {:.0f} s of warm-up; memory is a process's own.\n"
       "{:<12} {:>22} {:>9} {:>14} {:>16}\n",
       r.seconds - r.judged_from_s, r.judged_from_s, "", "memory MB", "MB/h", "threads", "descriptors");
   for (const ProcessReport& p : r.processes)
@@ -117,6 +130,9 @@ std::string to_table(const SoakReport& r) {
       "{:.1f} kB of log a minute\n",
       r.visits, 100 * r.located_share, r.long_visits, r.flaps, r.restarts, r.answered, r.log_kb_per_min);
   for (const std::string& failure : r.failures) table += failure + "\n";
+  if (!r.judged)
+    return table +
+           fmt::format("too short to judge whether anything grows: give --seconds {:.0f} or more\n", kJudged_s);
   return table + (r.failures.empty() ? "nothing grew\n" : "");
 }
 

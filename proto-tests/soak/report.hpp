@@ -32,10 +32,13 @@ struct SoakReport {
   std::size_t long_visits = 0, last_long_visits = 0;
   double located_share = 0, last_located_share = 0;
   double log_kb_per_min = 0;          ///< of the server that stays
-  std::vector<std::string> failures;  ///< one line each; empty: nothing grew and all worked
+  bool judged = false;                ///< long enough to tell whether anything grows
+  std::vector<std::string> failures;  ///< one line each; empty: all worked and, where judged, nothing grew
 };
 
-/// What grew by more than is allowed, and than the quartiles of its first third lie apart, has grown.
+/// A third that is shorter need not hold a restart of the standby and the tape to and fro, as they are by
+/// default, so that floors tell nothing. By hand; thirds of a run of kJudged_s last 60 s.
+constexpr double kLeastThird_s = 50, kJudged_s = 240;
 /// May have grown by so many between the first third and the last: Cyclone opens a descriptor more where two
 /// participants are made at one moment. A leak of one a visit or restart is over it within minutes.
 constexpr double kMostThreads = 2, kMostDescriptors = 2;
@@ -49,7 +52,7 @@ constexpr double kMostLogKbPerMin = 20;
 [[nodiscard]] ProcessReport summarize(const Watched& watched, double from_s);
 /// Fills visits and shares.
 void add_visits(const std::vector<Visit>& visits, SoakReport& report);
-/// Fills `failures`.
+/// Fills `judged` and `failures`.
 void judge(SoakReport& report);
 
 [[nodiscard]] std::string to_json(const SoakReport& report);

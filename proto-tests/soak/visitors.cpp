@@ -15,7 +15,8 @@
 namespace liloc::soak {
 namespace {
 
-constexpr double kMostBehind_s = 0.3;  // as of the stage
+constexpr double kMostBehind_s = 0.3;    // as of the stage
+constexpr int kGivenBack_bytes = 65536;  // below an image or a room; by hand
 
 client::Pose public_pose(const Pose& pose) {
   const Eigen::Quaterniond q(pose.linear());
@@ -183,6 +184,9 @@ void feed_all(House& house, const Tape& tape, const SoakOptions& options, const 
 Result<std::vector<Visit>> play_visitors(const Tape& tape, const SoakOptions& options, const RunClock& clock,
                                          const wire::DomainOptions& seat) {
   mallopt(M_ARENA_MAX, 2);  // as the server: with a heap a thread, 16 of them fill over many minutes
+  // What is freed goes back at once: what a heap keeps looks like a leak for minutes.
+  mallopt(M_MMAP_THRESHOLD, kGivenBack_bytes);
+  mallopt(M_TRIM_THRESHOLD, kGivenBack_bytes);
   const ClientLog log(options.out / "visitors.log");
   House house(tape, options, clock, seat);
   std::vector<Status> kept(house.places());

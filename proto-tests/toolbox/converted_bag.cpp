@@ -19,7 +19,7 @@ ConvertedBag::~ConvertedBag() {
   if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
-Status ConvertedBag::take(replay::ReplayOptions& options, BagArguments bag) {
+Conversion<void> ConvertedBag::take(replay::ReplayOptions& options, BagArguments bag) {
   const std::string given = options.recording.string();
   if (!bags::is_bag(options.recording)) {
     if (!bag.any() && !bag.still_seconds) return {};
@@ -31,7 +31,8 @@ Status ConvertedBag::take(replay::ReplayOptions& options, BagArguments bag) {
   convert->stopped = [] { return replay::stop_requested(); };
   if (const auto valid = options.validated(); !valid) return tl::unexpected(valid.error());
   std::string pattern = fs::temp_directory_path() / "liloc-bag-XXXXXX";
-  if (mkdtemp(pattern.data()) == nullptr) return fail("{}: cannot be made; set TMPDIR to a folder", pattern);
+  if (mkdtemp(pattern.data()) == nullptr)
+    return unwritten({fmt::format("{}: cannot be made; set TMPDIR to a folder", pattern)});
   folder_ = pattern;
   const fs::path recording = folder_ / "recording";
   const auto converted = bags::convert_bag(given, recording, *convert);

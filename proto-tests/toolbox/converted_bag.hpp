@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 
+#include "common/recording/convert_error.hpp"
 #include "proto-tests/replay/options.hpp"
 #include "server/tools/bag_options.hpp"
 
@@ -16,7 +17,7 @@ class ConvertedBag {
 
   /// Where `options.recording` is a bag, converts it, takes --device for its topics and puts the recording in
   /// its place. Errors: options of bags for what is none, a bag that cannot be converted, a stop signal.
-  [[nodiscard]] Status take(replay::ReplayOptions& options, BagArguments bag);
+  [[nodiscard]] Conversion<void> take(replay::ReplayOptions& options, BagArguments bag);
 
  private:
   std::filesystem::path folder_;

@@ -19,8 +19,8 @@ struct ReplayArguments {
 int run(ReplayArguments arguments) {
   replay::catch_stop_signals();
   ConvertedBag bag;
-  if (const Status taken = bag.take(arguments.options, arguments.bag); !taken)
-    return complain(taken.error(), kBadUsage);
+  if (const auto taken = bag.take(arguments.options, arguments.bag); !taken)
+    return complain({taken.error().message}, taken.error().unwritten ? kFailed : kBadUsage);
   const replay::ReplayOptions& options = arguments.options;
   ProgressBar bar(options.lockstep ? "replaying" : "replaying at recorded speed");
   auto report = replay::replay(options, [&](double share) { bar.show(share); });

@@ -24,6 +24,7 @@ int run(soak::SoakOptions& options) {
   replay::catch_stop_signals();
   options.programs = replay::program_folder();
   if (const Status ok = options.validated(); !ok) return complain(ok.error(), kBadUsage);
+  if (const Status ok = soak::clear_results(options.out); !ok) return complain(ok.error(), kBadUsage);
   const auto report = run_all(options);
   if (!report) return complain(report.error(), kFailed);
   fmt::print("{}written to {}\n", soak::to_table(*report), options.out.string());
@@ -39,7 +40,11 @@ void add_soak(CLI::App& app, int& exit_code) {
       "soak", "A site for hours, in which clients, LiDARs and servers come and go: fails where anything grows");
   command->add_option("OUT", o.out, "Folder for soak.json, samples.csv, visits.csv, site.json and logs")
       ->required();
-  command->add_option("--seconds", o.seconds, "Of the run; a quarter, 15 to 120 s, is warm-up and not judged")
+  command
+      ->add_option(
+          "--seconds", o.seconds,
+          "Of the run; a quarter, 15 to 120 s, is warm-up and not judged; under 240 s nothing is said of "
+          "growth")
       ->capture_default_str();
   command->add_option("--seed", o.seed, "Who comes and goes when, and the simulated site")
       ->check(command::any_seed())

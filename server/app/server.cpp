@@ -1,51 +1,13 @@
 #include "server/app/server.hpp"
 
-#include <malloc.h>
 #include <systemd/sd-daemon.h>
 
-#include <algorithm>
-#include <cmath>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
-
 #include "common/base/log.hpp"
-#include "server/view/access.hpp"
+#include "server/app/status_line.hpp"
 #include "server/web/health.hpp"
 
 namespace liloc {
 namespace {
-
-constexpr auto kPreparePeriod = std::chrono::milliseconds(50);  // a third of a ceiling frame's; by hand
-constexpr auto kTrimPeriod = std::chrono::seconds(10);          // a trim takes milliseconds; by hand
-constexpr auto kSaveSessionsPeriod = std::chrono::seconds(1);   // about an interval of requests; by hand
-constexpr auto kSavePeriod = std::chrono::minutes(1);  // so much is lost with a server that is killed; by hand
-
-/// Gives what clients that left have used back to the system; the C library would keep it.
-class HeapTrimmer {
- public:
-  void see(std::size_t clients) {
-    most_ = std::max(most_, clients);
-    const auto now = std::chrono::steady_clock::now();
-    if (clients == most_ || now < next_) return;
-    malloc_trim(0);
-    most_ = clients;
-    next_ = now + kTrimPeriod;
-  }
-
- private:
-  std::size_t most_ = 0;  ///< since the last trim
-  std::chrono::steady_clock::time_point next_;
-};
-
-/// Nothing that is worth a write: within a tenth, at 3 m.
-bool much_the_same(const std::vector<DepthNoise>& a, const std::vector<DepthNoise>& b) {
-  return a.size() == b.size() && std::ranges::equal(a, b, [](const DepthNoise& x, const DepthNoise& y) {
-           return (x.samples > 0) == (y.samples > 0) &&
-                  std::abs(x.sigma_m(3) - y.sigma_m(3)) < 0.1 * y.sigma_m(3) &&
-                  std::abs(x.missing - y.missing) < 0.1;
-         });
-}
 
 /// `idle` is asked by those who work on a request, so that there is a service.
 LocalizerOptions with_idle(LocalizerOptions options, std::function<bool()> idle) {
@@ -59,18 +21,16 @@ Server::Server(const ServerOptions& options, Site site)
     : server_id_(options.service.server_id),
       voxel_size_m_(options.localizer.voxel_size_m),
       global_cloud_(std::move(site), global_cloud_options_for(options.localizer)),
-      state_(options.state_file.empty()
-                 ? SiteState{}
-                 : open_site_state(options.state_file, global_cloud_.site(), voxel_size_m_)),
-      localizer_(
-          global_cloud_, with_idle(options.localizer, [this] { return service_->idle(); }), state_.learned,
-          options.save_answers ? AnswerSink([this](Answered answered) { keeper_->keep(std::move(answered)); })
-                               : AnswerSink()),
-      sessions_(sessions_file_of(state_.file), global_cloud_.site(), wall_clock_ns(), start_),
+      memory_(options.state_file, global_cloud_.site(), voxel_size_m_),
+      localizer_(global_cloud_, with_idle(options.localizer, [this] { return service_->idle(); }),
+                 memory_.at_start().learned,
+                 options.save_answers
+                     ? AnswerSink([this](Answered answered) { keeper_->keep(std::move(answered)); })
+                     : AnswerSink()),
+      sessions_(sessions_file_of(memory_.at_start().file), global_cloud_.site(), wall_clock_ns(), start_),
       journal_(options.page ? std::make_shared<view::Journal>() : nullptr) {
-  saved_ = localizer_.learned();
-  global_cloud_.set_known_noise(state_.noise);
-  saved_noise_ = state_.noise;
+  memory_.begin(localizer_.learned());
+  global_cloud_.set_known_noise(memory_.at_start().noise);
 }
 
 Server::~Server() {
@@ -103,8 +63,11 @@ Status Server::join(const ServerOptions& options) {
   if (options.metrics)
     if (auto opened = open_web(*options.metrics); !opened) return opened;
   if (options.page)
-    if (auto opened = open_page(options); !opened) return opened;
-  preparer_ = std::jthread([this](const std::stop_token& stop) { keep_prepared(stop); });
+    if (auto opened = page_.open(*options.page, options.page_token_file, page_source()); !opened) return opened;
+  upkeep_ = std::make_unique<Upkeep>(Upkeep::Duties{.clients = [this] { return service_->clients(); },
+                                                    .prepare = [this] { global_cloud_.prepare(); },
+                                                    .save_sessions = [this] { save_sessions(); },
+                                                    .save_learned = [this] { save_learned(); }});
   return {};
 }
 
@@ -192,26 +155,12 @@ Status Server::open_web(const web::Address& address) {
   return {};
 }
 
-Status Server::open_page(const ServerOptions& options) {
-  view::PageOptions page{*options.page, page_token_};  // viewers stay when devices have to join anew
-  if (!options.page_token_file.empty()) {
-    const auto token = view::token_from(options.page_token_file);
-    if (!token) return fail("--web-token: {}", token.error().message);
-    page.token = *token;
-  } else if (page.token.empty() && !web::is_loopback(page.address)) {
-    page.token = view::new_token();
-  }
-  auto server = view::PageServer::start(page, {.site = global_cloud_.site(),
-                                               .facts = [this] { return facts(); },
-                                               .moment = [this] { return global_cloud_.newest(); },
-                                               .journal = journal_,
-                                               .log = log_});
-  if (!server) return fail("--web: {}", server.error().message);
-  page_ = std::move(*server);
-  page_token_ = page.token;
-  page_url_ = fmt::format("http://{}/", web::text_of({page.address.host, page_->port()}));
-  if (!page.token.empty() && options.page_token_file.empty()) page_url_ += "?token=" + page.token;
-  return {};
+view::Source Server::page_source() {
+  return {.site = global_cloud_.site(),
+          .facts = [this] { return facts(); },
+          .moment = [this] { return global_cloud_.newest(); },
+          .journal = journal_,
+          .log = log_};
 }
 
 SpotReply Server::locate(const SpotRequest& request) {
@@ -241,59 +190,23 @@ web::ServerFacts Server::facts() const {
   return facts;
 }
 
-/// Builds the room's indices beside the requests, as long as there is anyone who might ask.
-void Server::keep_prepared(const std::stop_token& stop) {
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  std::unique_lock lock(mutex);
-  auto save_at = std::chrono::steady_clock::now() + kSavePeriod;
-  auto sessions_at = std::chrono::steady_clock::now() + kSaveSessionsPeriod;
-  HeapTrimmer trimmer;
-  while (!stop.stop_requested()) {
-    const std::size_t clients = service_->clients();
-    trimmer.see(clients);
-    try {
-      if (clients > 0) global_cloud_.prepare();
-    } catch (const std::exception& trouble) {  // the requests will say what is wrong with the room
-      log::error("the room's indices were not made: {}", trouble.what());
-    }
-    if (std::chrono::steady_clock::now() >= sessions_at) {
-      save_sessions();
-      sessions_at = std::chrono::steady_clock::now() + kSaveSessionsPeriod;
-    }
-    if (std::chrono::steady_clock::now() >= save_at) {
-      save_learned();
-      save_at += kSavePeriod;
-    }
-    wake.wait_for(lock, stop, kPreparePeriod, [] { return false; });
-  }
-}
-
 void Server::save_sessions() {
   const Status saved = sessions_.save(wall_clock_ns(), std::chrono::steady_clock::now());
   if (!std::exchange(sessions_saved_, saved.has_value()) || saved) return;
   log::warning("{}; devices are searched anew after a restart", saved.error().message);
 }
 
-/// At most once a minute, and at the end; only when something was learned.
 void Server::save_learned() {
-  auto learned = localizer_.learned();
-  auto noise = global_cloud_.noise();
-  if (state_.file.empty() || (learned == saved_ && much_the_same(noise, saved_noise_))) return;
-  if (const Status written =
-          write_site_state(state_.file, global_cloud_.site(), voxel_size_m_, *learned, noise);
-      !written)
-    log::warning("{}; or name another with --state", written.error().message);
-  saved_ = std::move(learned);
-  saved_noise_ = std::move(noise);
+  memory_.save(localizer_.learned(), global_cloud_.noise());
 }
 
-/// In the order in which members go.
+/// In the order in which members go. `sessions_` stays: devices that join anew are taken up by it. Of those
+/// whom the credentials no longer let in nobody asks again, and it has forgotten them after a minute.
 void Server::leave() {
   halt();
   dispatcher_.reset();
   service_.reset();
-  localizer_.forget_all();  // whom the credentials no longer let in must not be remembered
+  localizer_.forget_all();  // the next service knows none of its clients, and would never say that one has left
   if (journal_) journal_->forget_all();
   ingest_.reset();
   status_publisher_.reset();
@@ -306,10 +219,9 @@ void Server::stop() {
 }
 
 void Server::halt() {
-  page_.reset();
+  page_.close();
   web_.reset();
-  preparer_.request_stop();
-  if (preparer_.joinable()) preparer_.join();
+  upkeep_.reset();
   if (service_) service_->stop();
   if (dispatcher_) dispatcher_->stop();
   save_learned();
@@ -333,19 +245,7 @@ wire::ServerStatus Server::status() const {
 }
 
 void Server::log_status() const {
-  const auto now = status();
-  std::string lidars;
-  const auto noise = global_cloud_.noise();
-  for (std::size_t i = 0; i < now.lidars.size(); ++i) {
-    const auto& lidar = now.lidars[i];
-    lidars += fmt::format("{}{} {} {:.1f} Hz", lidars.empty() ? "" : ", ", lidar.id, wire::name_of(lidar.state),
-                          lidar.measured_hz);
-    if (i < noise.size() && noise[i].samples > 0)
-      lidars += fmt::format(" (noise {:.0f} mm at 3 m, {:.0f} % missing)", 1e3 * noise[i].sigma_m(3),
-                            100 * noise[i].missing);
-  }
-  log::info("{} clients, {} queued, {} answered ({} verified, {} refused); {}", now.clients, now.queued,
-            now.answered, now.verified, now.refused, lidars);
+  log::info("{}", status_line(status(), global_cloud_.noise()));
 }
 
 }  // namespace liloc

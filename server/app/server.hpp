@@ -3,16 +3,16 @@
 #include <atomic>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "common/wire/spots/status.hpp"
 #include "server/app/options.hpp"
 #include "server/app/session_store.hpp"
-#include "server/app/site_state.hpp"
+#include "server/app/site_memory.hpp"
+#include "server/app/site_page.hpp"
+#include "server/app/upkeep.hpp"
 #include "server/global_cloud/global_cloud.hpp"
 #include "server/ingest/ingest.hpp"
 #include "server/service/service.hpp"
-#include "server/view/page_server.hpp"
 #include "server/web/metrics.hpp"
 #include "server/web/web_server.hpp"
 
@@ -30,16 +30,16 @@ class Server {
   /// Refuses new requests, finishes what waits, then hears no more of DDS. Safe to call twice.
   void stop();
   /// Leaves the network and joins it again, with credentials that have changed: only then does DDS look at
-  /// them. What is known of the site and its clouds stays; devices join anew. By the caller of `start`; an
-  /// error leaves it stopped.
+  /// them. What is known of the site and its clouds stays; devices join anew and are taken up (SessionStore).
+  /// By the caller of `start`; an error leaves it stopped.
   [[nodiscard]] Status rejoin(const ServerOptions& options);
   [[nodiscard]] wire::ServerStatus status() const;
   /// Of the metrics; 0 without them.
   [[nodiscard]] int metrics_port() const { return web_ ? web_->port() : 0; }
   /// Of the page; 0 without it.
-  [[nodiscard]] int page_port() const { return page_ ? page_->port() : 0; }
+  [[nodiscard]] int page_port() const { return page_.port(); }
   /// What a browser opens to see the page, with the token where one is asked for; empty without it.
-  [[nodiscard]] const std::string& page_url() const { return page_url_; }
+  [[nodiscard]] const std::string& page_url() const { return page_.url(); }
 
  private:
   Server(const ServerOptions& options, Site site);
@@ -49,22 +49,19 @@ class Server {
   [[nodiscard]] Status open(const ServerOptions& options);
   [[nodiscard]] Status open_streams(const ServerOptions& options);
   [[nodiscard]] Status open_web(const web::Address& address);
-  [[nodiscard]] Status open_page(const ServerOptions& options);
+  [[nodiscard]] view::Source page_source();
   [[nodiscard]] SpotReply locate(const SpotRequest& request);
   void note_answer(const SpotReply& reply);
   [[nodiscard]] web::ServerFacts facts() const;
   void log_status() const;
-  void keep_prepared(const std::stop_token& stop);
   void save_learned();
   void save_sessions();
 
   const std::string server_id_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   const double voxel_size_m_;
-  std::shared_ptr<const CellBounds> saved_;  ///< as the state file has it; of the preparer, then of `stop`
-  std::vector<DepthNoise> saved_noise_;      ///< the same file's
   GlobalCloud global_cloud_;
-  const SiteState state_;  ///< as it was at the start
+  SiteMemory memory_;
   Localizer localizer_;
   SessionStore sessions_;
   std::unique_ptr<answers::AnswerKeeper> keeper_;  ///< null: answers are not kept; holds moments of the room
@@ -74,14 +71,13 @@ class Server {
   std::unique_ptr<Ingest> ingest_;
   std::unique_ptr<Service> service_;
   std::unique_ptr<wire::Dispatcher> dispatcher_;  // its thread uses all of the above: it goes first
-  bool sessions_saved_ = true;                    ///< the last time; of the preparer, then of `stop`
-  std::jthread preparer_;
+  bool sessions_saved_ = true;                    ///< the last time; of the upkeep, then of `stop`
+  std::unique_ptr<Upkeep> upkeep_;                // its thread asks all of the above
   std::atomic<std::chrono::steady_clock::time_point> beat_ = start_;  ///< when the dispatcher was last at work
   web::Metrics metrics_;
   std::shared_ptr<const view::LogTail> log_;  ///< for the page; may be null
-  std::string page_url_, page_token_;
-  std::unique_ptr<web::WebServer> web_;     // its threads ask all of the above
-  std::unique_ptr<view::PageServer> page_;  // so does its thread
+  std::unique_ptr<web::WebServer> web_;       // its threads ask all of the above
+  SitePage page_;                             // so does its thread
 };
 
 }  // namespace liloc

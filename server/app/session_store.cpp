@@ -1,15 +1,14 @@
 #include "server/app/session_store.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
+#include <vector>
 
 #include "common/base/ids.hpp"
 #include "common/base/log.hpp"
-#include "common/recording/files.hpp"
-#include "common/recording/json_fields.hpp"
+#include "common/recording/private_file.hpp"
+#include "server/app/remembered_json.hpp"
 
 namespace liloc {
 namespace {
@@ -32,73 +31,10 @@ std::string name_of_places(const Site& site) {
   std::string name;
   for (const GlobalLidar& lidar : site.global_lidars) {
     name += lidar.id;
-    for (const double value : lidar.T_map_sensor.matrix().reshaped()) name += fmt::format(" {:.9g}", value);
+    for (const double value : lidar.T_map_sensor.matrix().reshaped()) name += fmt::format(" {}", value);
     name += "; ";
   }
   return name;
-}
-
-ordered_json looks_to_json(const LookTerms& looks) {
-  return {{"support", looks.support},
-          {"contradiction", looks.contradiction},
-          {"excess", looks.excess},
-          {"misfit", looks.misfit}};
-}
-
-Result<LookTerms> looks_from(const JsonFields& fields) {
-  LookTerms looks;
-  for (const auto& [name, into] :
-       {std::pair{"support", &looks.support}, std::pair{"contradiction", &looks.contradiction},
-        std::pair{"excess", &looks.excess}, std::pair{"misfit", &looks.misfit}}) {
-    const auto value = fields.number(name, -100, 100);
-    if (!value) return tl::unexpected(value.error());
-    *into = *value;
-  }
-  return looks;
-}
-
-ordered_json to_json(const Remembered& remembered) {
-  const Followed& followed = remembered.followed;
-  ordered_json covariance = ordered_json::array();
-  for (const double value : followed.estimate.covariance.reshaped()) covariance.push_back(value);
-  return {
-      {"odom_segment", remembered.odom_segment}, {"T_map_sensor", pose_to_json(followed.estimate.T_map_sensor)},
-      {"covariance", std::move(covariance)},     {"T_odom_sensor", pose_to_json(followed.T_odom_sensor)},
-      {"log_odds", followed.log_odds},           {"usual", looks_to_json(followed.usual)}};
-}
-
-Result<Matrix6d> covariance_from(const JsonFields& fields) {
-  const std::string where = fields.path("covariance");
-  if (!fields.has("covariance") || !fields.raw("covariance").is_array() ||
-      fields.raw("covariance").size() != 36)
-    return fail("{} is no list of 36 numbers", where);
-  Matrix6d covariance;
-  for (Eigen::Index i = 0; i < 36; ++i) {
-    const auto& value = fields.raw("covariance").at(static_cast<std::size_t>(i));
-    covariance(i / 6, i % 6) = value.is_number() ? value.get<double>() : NAN;
-  }
-  const bool sound = covariance.allFinite() && covariance.isApprox(covariance.transpose(), 1e-6) &&
-                     Eigen::SelfAdjointEigenSolver<Matrix6d>(covariance).eigenvalues().minCoeff() > 0;
-  if (!sound) return fail("{} is no covariance", where);
-  return covariance;
-}
-
-Result<Remembered> remembered_from(const JsonFields& fields) {
-  const auto segment = fields.number("odom_segment", 0, 4294967295.0);
-  if (!segment) return tl::unexpected(segment.error());
-  const auto T_map_sensor = fields.pose("T_map_sensor"), T_odom_sensor = fields.pose("T_odom_sensor");
-  if (!T_map_sensor) return tl::unexpected(T_map_sensor.error());
-  if (!T_odom_sensor) return tl::unexpected(T_odom_sensor.error());
-  const auto covariance = covariance_from(fields);
-  if (!covariance) return tl::unexpected(covariance.error());
-  const auto log_odds = fields.number("log_odds", -50, 50);
-  if (!log_odds) return tl::unexpected(log_odds.error());
-  if (!fields.has("usual") || !fields.raw("usual").is_object())
-    return fail("{} is missing", fields.path("usual"));
-  const auto usual = looks_from(JsonFields(fields.raw("usual"), fields.path("usual")));
-  if (!usual) return tl::unexpected(usual.error());
-  return Remembered{static_cast<std::uint32_t>(*segment),
-                    begun({*T_map_sensor, *covariance}, *T_odom_sensor, *log_odds, *usual)};
 }
 
 /// As hexadecimal digits: a number of JSON has 53 bits.
@@ -108,6 +44,46 @@ std::optional<std::uint64_t> session_from(const Result<std::string>& text) {
   const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), session, 16);
   if (error != std::errc() || end != text->data() + text->size()) return std::nullopt;
   return session;
+}
+
+/// A client as the file has it.
+struct Client {
+  std::string id;
+  std::uint64_t session = 0;
+  double age_s = 0;  ///< when it was written
+  Remembered remembered;
+};
+
+Result<Client> client_from(const nlohmann::json& object, const std::string& where) {
+  if (!object.is_object()) return fail("{} is no object", where);
+  const JsonFields fields(object, where);
+  const auto id =
+      fields.text("id").and_then([&](const std::string& s) { return valid_id(s, fields.path("id")); });
+  if (!id) return tl::unexpected(id.error());
+  const auto session = session_from(fields.text("session"));
+  if (!session) return fail("{} is none", fields.path("session"));
+  const auto age_s = fields.number("age_s", 0, kMostAge_s);
+  if (!age_s) return tl::unexpected(age_s.error());
+  auto remembered = remembered_from(fields);
+  if (!remembered) return tl::unexpected(remembered.error());
+  return Client{*id, *session, *age_s, std::move(*remembered)};
+}
+
+/// One that cannot be used costs itself alone.
+std::vector<Client> clients_from(const nlohmann::json& list, const std::string& file) {
+  std::vector<Client> clients;
+  std::string first;  // of what is wrong
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    auto client = client_from(list[i], fmt::format("clients[{}]", i));
+    if (client)
+      clients.push_back(std::move(*client));
+    else if (first.empty())
+      first = client.error().message;
+  }
+  if (!first.empty())
+    log::warning("{}: {} of {} devices are searched anew; the first: {}", file, list.size() - clients.size(),
+                 list.size(), first);
+  return clients;
 }
 
 }  // namespace
@@ -141,27 +117,17 @@ void SessionStore::read(StampNs wall_ns, Time now) {
   if (*site != site_ || age_s < 0 || age_s > kMostAge_s) return;
   if (!fields.has("clients") || !fields.raw("clients").is_array() || fields.raw("clients").size() > kMost)
     return unusable("its clients are no list");
-  for (const auto& client : fields.raw("clients")) {
-    if (!client.is_object()) return unusable("a client is no object");
-    const JsonFields each(client, file_ + ": clients");
-    const auto id = each.text("id");
-    const auto session = session_from(each.text("session"));
-    const auto older_s = each.number("age_s", 0, kMostAge_s);
-    if (!id || !valid_id(*id, "id") || !session || !older_s)
-      return unusable("a client has no id, session or age");
-    auto remembered = remembered_from(each);
-    if (!remembered) return unusable(remembered.error().message);
-    known_[*id] = {
-        *session,
-        now - std::chrono::duration_cast<Time::duration>(std::chrono::duration<double>(age_s + *older_s)),
-        std::move(*remembered)};
+  for (Client& client : clients_from(fields.raw("clients"), file_)) {
+    const std::chrono::duration<double> older(age_s + client.age_s);
+    known_[client.id] = {client.session, now - std::chrono::duration_cast<Time::duration>(older),
+                         std::move(client.remembered)};
   }
 }
 
 std::optional<SessionStore::Resumable> SessionStore::begin(const std::string& client_id, std::uint64_t session,
                                                            Time now) {
   const std::scoped_lock lock(mutex_);
-  make_room(now);
+  if (!known_.contains(client_id)) make_room(now);
   Known& known = known_[client_id];
   const double age_s = seconds_between(known.at, now);
   if (known.session == session && known.remembered && age_s <= kMostAge_s)
@@ -189,10 +155,13 @@ void SessionStore::make_room(Time now) {
 }
 
 Status SessionStore::save(StampNs wall_ns, Time now) {
+  const std::scoped_lock one_at_a_time(saving_);
   std::unique_lock lock(mutex_);
   if (file_.empty() || !std::exchange(changed_, false)) return {};
+  const auto all = known_;  // `begin` and `note` do not wait for what follows
+  lock.unlock();
   ordered_json clients = ordered_json::array();
-  for (const auto& [id, known] : known_) {
+  for (const auto& [id, known] : all) {
     const double age_s = seconds_between(known.at, now);
     if (!known.remembered || age_s > kMostAge_s) continue;
     ordered_json client{
@@ -200,13 +169,16 @@ Status SessionStore::save(StampNs wall_ns, Time now) {
     client.update(to_json(*known.remembered));
     clients.push_back(std::move(client));
   }
-  lock.unlock();
   const ordered_json object{{"format", kFormat},
                             {"version", kVersion},
                             {"site", site_},
                             {"saved_s", to_seconds(wall_ns)},
                             {"clients", std::move(clients)}};
-  return write_file(file_, object.dump() + "\n");
+  Status written = write_private_file(file_, object.dump() + "\n");
+  if (written) return written;
+  lock.lock();
+  changed_ = true;  // so that the next call tries again
+  return written;
 }
 
 }  // namespace liloc

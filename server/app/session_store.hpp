@@ -27,7 +27,8 @@ class SessionStore {
   };
 
   /// Reads `file`, where there is one: what is over a minute old, of another site or cannot be used counts for
-  /// nothing; the latter is told in the log. `file` empty: in memory alone. `wall_ns`: the computer's time.
+  /// nothing; the latter is told in the log. A client that cannot be used does not cost the others. `file`
+  /// empty: in memory alone. `wall_ns`: the computer's time.
   SessionStore(std::string file, const Site& site, StampNs wall_ns, Time now);
 
   /// A run of a client asks for the first time: what is remembered of it.
@@ -35,7 +36,8 @@ class SessionStore {
   /// What is known of a client after an answer; ignored where another run of it has begun meanwhile.
   void note(const std::string& client_id, std::uint64_t session, const std::optional<Remembered>& remembered,
             Time now);
-  /// Writes the file where something has changed. Errors: it cannot be written.
+  /// Writes the file where something has changed, for its owner alone: who knows a session may take a device's
+  /// place. Errors: it cannot be written; the next call tries again.
   [[nodiscard]] Status save(StampNs wall_ns, Time now);
 
  private:
@@ -48,6 +50,7 @@ class SessionStore {
   void make_room(Time now);
 
   const std::string file_, site_;  ///< site_: where its LiDARs hang
+  std::mutex saving_;              ///< held while the file is written; before the other
   mutable std::mutex mutex_;
   std::map<std::string, Known> known_;  ///< by client
   bool changed_ = false;

@@ -40,7 +40,7 @@ struct Localizer::Impl {
   std::map<std::string, Pose> last_learned;        ///< per client; a device that stands still teaches once
   std::set<std::string> troubled;                  ///< clients whose trouble the log has
   std::shared_ptr<const Snapshot> first_snapshot;  ///< static_noopt: the room as it was at the start
-  SourceLimit failures{}, troubles{};              ///< lines of the log
+  SourceLimit failures{}, troubles{}, cut_offs{};  ///< lines of the log
 
   std::shared_ptr<DeviceSession> session(const std::string& client_id) {
     const std::scoped_lock lock(mutex);
@@ -94,6 +94,7 @@ struct Localizer::Impl {
                            : refusal(request, Reason::bad_cloud, spot.error().message);
     if (spot) note_trouble(request.client_id, **spot);
     if (spot) learn(**spot, reply);
+    if (reply.reason == Reason::overloaded) note_cut_off(request.client_id);
     if (kept) {
       if (spot) kept->moving = (*spot)->moving();
       kept->reply = reply;
@@ -116,6 +117,15 @@ struct Localizer::Impl {
     if (!held) return;
     troubled.insert(client_id);
     log::warning("{}: {}{}", client_id, spot.trouble(), held_back(*held));
+  }
+
+  /// Who shows what takes long to search shows it again.
+  void note_cut_off(const std::string& client_id) {
+    const std::scoped_lock lock(mutex);
+    if (const auto held = cut_offs.pass(client_id, std::chrono::steady_clock::now()))
+      log::warning(
+          "{}: a search was cut off after {:.1f} s and is not believed: what it did not reach may look alike{}",
+          client_id, std::chrono::duration<double>(options.search_limit).count(), held_back(*held));
   }
 
   /// Who sends what cannot be handled sends it again.
@@ -142,6 +152,7 @@ Localizer::Localizer(GlobalCloud& global_cloud, LocalizerOptions options, CellBo
                      std::move(options),
                      std::move(sink),
                      std::make_shared<const CellBounds>(std::move(learned)),
+                     {},
                      {},
                      {},
                      {},

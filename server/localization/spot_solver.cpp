@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 
-#include "common/base/log.hpp"
 #include "common/codec/codec.hpp"
 #include "common/registration/search/feature_search.hpp"
 
@@ -134,12 +133,7 @@ RoomSearch search(const Spot& spot, const LocalizerOptions& options) {
   for (const UpPair& up : ups_to_try(problem)) {
     const auto began = std::chrono::steady_clock::now();
     const std::vector<Candidate> candidates = GravityProposer(up).propose(problem);
-    if (std::chrono::steady_clock::now() - began >= problem.search_limit) {
-      log::warning(
-          "a search was cut off after {:.1f} s and is not believed: what it did not reach may look alike",
-          std::chrono::duration<double>(problem.search_limit).count());
-      return {{}, true};
-    }
+    if (std::chrono::steady_clock::now() - began >= problem.search_limit) return {{}, true};
     found = merged(std::move(found), judge_candidates(problem, candidates));
     if (up.supported && !found.empty()) return {found};  // every place was looked at; features never won there
   }

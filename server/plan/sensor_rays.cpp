@@ -51,6 +51,7 @@ std::vector<Surface> SensorRays::seen(const VoxelRoom& room, const Pose& T_map_s
   }
   std::ranges::sort(surfaces);
   surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
+  surfaces.shrink_to_fit();  // thousands of views are kept
   return surfaces;
 }
 

@@ -16,7 +16,8 @@ class SensorRays {
   /// `camera` is a validated one; `range_m` along the ray, 0.5 to 30 m.
   SensorRays(const Camera& camera, double range_m);
 
-  /// Surfaces that give a return: rising, each once. Those met under less than 6 degrees give none.
+  /// Surfaces that give a return: rising, each once, with no room to spare. Those met under less than 6
+  /// degrees give none.
   [[nodiscard]] std::vector<Surface> seen(const VoxelRoom& room, const Pose& T_map_sensor) const;
 
   /// Ranges at a coarse grid of the view, `kGridColumns` x `kGridRows`, row by row, in metres; the range limit

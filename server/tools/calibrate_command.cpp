@@ -69,7 +69,7 @@ Result<std::vector<survey::LidarScan>> scans_of(const Recording& recording, cons
 
 Result<std::optional<survey::Reference>> reference_of(const std::string& file) {
   if (file.empty()) return std::nullopt;
-  const auto cloud = read_cloud_file(file);
+  const auto cloud = read_map_scan(file);
   if (!cloud) return tl::unexpected(cloud.error());
   auto reference = survey::Reference::create(*cloud, survey::kVoxel_m);
   if (!reference) return fail("{}: {}", file, reference.error().message);

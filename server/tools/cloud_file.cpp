@@ -45,7 +45,8 @@ std::optional<Scalar> scalar_of(std::uint8_t datatype) {
 
 // Beyond what the cloud itself spans. A sensor sees half as far. By hand.
 constexpr double kFarOff_m = 20;
-constexpr double kCoarsest_m = 0.005;  // between coordinates: a tenth of a voxel; by hand
+constexpr double kCoarsest_m = 0.005;     // between coordinates: a tenth of a voxel; by hand
+constexpr double kFromOrigin_m = 16'000;  // as a site's LiDARs (common/recording/site_extent.cpp)
 
 /// x, y and z of every point as they are stored: PCL's own conversion takes an axis of another type for zero.
 Result<Points> points_of(const pcl::PCLPointCloud2& stored, const std::string& name) {
@@ -146,6 +147,18 @@ Result<PlacedCloud> read_placed_cloud(const std::filesystem::path& file) {
         "doubles",
         file.string(), origin.norm(), apart_m);
   return PlacedCloud{cloud_about(*points, origin), origin};
+}
+
+Result<Cloud> read_map_scan(const std::filesystem::path& file) {
+  const auto points = read_points(file);
+  if (!points) return tl::unexpected(points.error());
+  const Eigen::Vector3d origin = origin_of(*points);
+  if (origin.cwiseAbs().maxCoeff() > kFromOrigin_m)
+    return fail(
+        "{}: lies {:.0f} m from the map's origin, must be within {:.0f} m: give metres, or subtract "
+        "[{:.0f} {:.0f} {:.0f}] from its points while they are doubles, and from the site's places",
+        file.string(), origin.norm(), kFromOrigin_m, origin.x(), origin.y(), origin.z());
+  return cloud_about(*points, Eigen::Vector3d::Zero());
 }
 
 }  // namespace liloc::toolbox

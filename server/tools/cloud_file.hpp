@@ -18,4 +18,8 @@ struct PlacedCloud {
 /// middle: floats would be too coarse, and nothing was seen from there.
 [[nodiscard]] Result<PlacedCloud> read_placed_cloud(const std::filesystem::path& file);
 
+/// The same, of a scan in the frame of a site's map, which is kept in floats. Errors: also over 16 km from its
+/// origin, as in the coordinates of a survey.
+[[nodiscard]] Result<Cloud> read_map_scan(const std::filesystem::path& file);
+
 }  // namespace liloc::toolbox

@@ -21,7 +21,7 @@ struct ConvertArguments {
 
 using Stopped = std::function<bool()>;
 
-Status convert_bag(const ConvertArguments& arguments, const Stopped& stopped) {
+Conversion<void> convert_bag(const ConvertArguments& arguments, const Stopped& stopped) {
   if (!arguments.camera.empty()) return fail("--camera: is of a TUM sequence; of a bag give --device-file");
   auto options = arguments.bag.options();
   if (!options) return tl::unexpected(options.error());
@@ -51,20 +51,20 @@ Result<DeviceInfo> device_of_tum(const ConvertArguments& arguments) {
   return device;
 }
 
-Status convert_tum(const ConvertArguments& arguments, const Stopped& stopped) {
+Conversion<void> convert_tum(const ConvertArguments& arguments, const Stopped& stopped) {
   auto device = device_of_tum(arguments);
   if (!device) return tl::unexpected(device.error());
   auto folder = NewFolder::beside(arguments.out);
   if (!folder) return tl::unexpected(folder.error());
   const auto frames = tum_to_device(arguments.in, folder->path(), std::move(*device), stopped);
   if (!frames) return tl::unexpected(frames.error());
-  if (Status kept = folder->keep(); !kept) return kept;
+  if (const Status kept = folder->keep(); !kept) return unwritten(kept.error());
   fmt::print("{}: {} frames; to replay it, add a site.json and its ceiling's global/\n",
              arguments.bag.devices.front(), *frames);
   return {};
 }
 
-Status convert_to_tum(const ConvertArguments& arguments, const Stopped& stopped) {
+Conversion<void> convert_to_tum(const ConvertArguments& arguments, const Stopped& stopped) {
   const BagArguments& bag = arguments.bag;
   if (bag.any() || !bag.devices.empty() || bag.still_seconds || !arguments.camera.empty())
     return fail("--to tum: takes all devices of a recording as they are; leave out the other options");
@@ -74,14 +74,15 @@ Status convert_to_tum(const ConvertArguments& arguments, const Stopped& stopped)
   auto folder = NewFolder::beside(arguments.out);
   if (!folder) return tl::unexpected(folder.error());
   for (const DeviceRecording& device : recording->devices) {
-    if (Status written = device_to_tum(device, folder->path() / device.info.id, stopped); !written)
+    if (auto written = device_to_tum(device, folder->path() / device.info.id, stopped); !written)
       return written;
     fmt::print("{}: {} frames\n", device.info.id, device.depth.size());
   }
-  return folder->keep();
+  if (const Status kept = folder->keep(); !kept) return unwritten(kept.error());
+  return {};
 }
 
-Status convert(const ConvertArguments& arguments, const Stopped& stopped) {
+Conversion<void> convert(const ConvertArguments& arguments, const Stopped& stopped) {
   if (arguments.to == "tum") return convert_to_tum(arguments, stopped);
   return is_tum_folder(arguments.in) ? convert_tum(arguments, stopped) : convert_bag(arguments, stopped);
 }
@@ -89,9 +90,9 @@ Status convert(const ConvertArguments& arguments, const Stopped& stopped) {
 int run(const ConvertArguments& arguments) {
   const StopSignals signals;
   bool stopped = false;
-  const Status done = convert(
+  const auto done = convert(
       arguments, [&] { return stopped = stopped || signals.within(std::chrono::milliseconds(0)) != 0; });
-  if (!done) return complain(done.error(), stopped ? kFailed : kBadUsage);
+  if (!done) return complain({done.error().message}, stopped || done.error().unwritten ? kFailed : kBadUsage);
   fmt::print("written to {}\n", arguments.out);
   return kDone;
 }

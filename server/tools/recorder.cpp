@@ -1,8 +1,8 @@
 #include "server/tools/recorder.hpp"
 
-#include <set>
 #include <system_error>
 
+#include "common/base/distinct_topics.hpp"
 #include "common/geometry/depth.hpp"
 #include "common/recording/writer.hpp"
 #include "common/wire/sensors/sensors.hpp"
@@ -19,11 +19,10 @@ Status Recorder::check(const Site& site, const std::vector<DeviceInfo>& devices,
   std::error_code error;
   if (fs::exists(out, error) && (!fs::is_directory(out, error) || !fs::is_empty(out, error)))
     return fail("{}: is there already; name a new folder", out.string());
-  std::set<std::string> ids;
-  for (const GlobalLidar& lidar : site.global_lidars) ids.insert(lidar.id);
-  for (const DeviceInfo& device : devices)
-    if (!ids.insert(device.id).second) return fail("{}: two sensors have this id; rename one", device.id);
-  return {};
+  std::vector<std::string> ids;
+  for (const GlobalLidar& lidar : site.global_lidars) ids.push_back(lidar.id);
+  for (const DeviceInfo& device : devices) ids.push_back(device.id);
+  return check_distinct_topics(ids);
 }
 
 Result<std::unique_ptr<Recorder>> Recorder::create(wire::Dispatcher& dispatcher, const Site& site,
@@ -96,12 +95,13 @@ Status Recorder::add_device(wire::Dispatcher& dispatcher, const DeviceInfo& devi
     return subscribed;
   if (!device.T_imu_sensor) return {};
   if (Status opened = one.imu.open(folder / "imu.csv"); !opened) return opened;
-  one.has_imu = true;
   return wire::subscribe_imu(dispatcher, device.id, [this, &one](const Result<ImuSample>& sample) {
     if (!sample) return refuse(one, sample.error().message);
-    if (!one.imu.add(*sample)) return refuse(one, "an IMU sample whose stamp does not rise");
+    const bool taken = one.imu.add(*sample);
+    if (!taken && one.imu.written()) return refuse(one, "an IMU sample whose stamp does not rise");
     const std::scoped_lock lock(mutex_);
     one.recorded.samples = one.imu.rows();
+    if (trouble_) trouble_ = one.imu.written();
   });
 }
 
@@ -159,10 +159,8 @@ std::map<std::string, Recorded> Recorder::recorded() const {
 Status Recorder::finish() {
   waiting_.close();
   writers_.clear();  // joins: each drains the queue first
-  Status done = trouble();
+  const Status done = trouble();
   for (auto& [id, sensor] : sensors_) {
-    if (sensor.has_imu)
-      if (const Status closed = sensor.imu.close(); !closed && done) done = closed;
     std::error_code ignored;
     if (sensor.recorded.frames == 0 && sensor.folder.parent_path().filename() == "devices")
       fs::remove_all(sensor.folder, ignored);

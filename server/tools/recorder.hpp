@@ -54,7 +54,6 @@ class Recorder {
     Camera camera;
     Recorded recorded;
     ImuTable imu;
-    bool has_imu = false;
   };
   struct Frame {
     Sensor* sensor = nullptr;

@@ -89,6 +89,10 @@ void append_lidars(const ServerFacts& facts, std::vector<MetricFamily>& out) {
   auto age = family(MetricType::Gauge, "liloc_lidar_age_seconds", "Since the newest good frame came");
   auto valid = family(MetricType::Gauge, "liloc_lidar_valid_share",
                       "Of the pixels of the frames of two seconds, with a return, median");
+  auto clock = family(MetricType::Gauge, "liloc_lidar_clock_offset_seconds",
+                      "Its clock ahead of the one that most LiDARs agree on");
+  auto corrected =
+      family(MetricType::Gauge, "liloc_lidar_clock_corrected", "1 where its stamps are set right by that");
   auto frames = family(MetricType::Counter, "liloc_lidar_frames_total", "Frames that were taken");
   auto dropped = family(MetricType::Counter, "liloc_lidar_dropped_total", "Frames that could not be used");
   for (const LidarFacts& lidar : facts.lidars) {
@@ -98,10 +102,13 @@ void append_lidars(const ServerFacts& facts, std::vector<MetricFamily>& out) {
     add(rate, lidar.health.measured_hz, label);
     if (lidar.age_s) add(age, *lidar.age_s, label);
     if (lidar.age_s) add(valid, lidar.health.returns, label);
+    if (lidar.age_s) add(clock, lidar.health.clock_offset_s, label);
+    if (lidar.age_s) add(corrected, lidar.health.clock_corrected ? 1 : 0, label);
     add(frames, static_cast<double>(lidar.health.frames), label);
     add(dropped, static_cast<double>(lidar.health.malformed), label);
   }
-  for (auto* made : {&up, &rate, &age, &valid, &frames, &dropped}) out.push_back(std::move(*made));
+  for (auto* made : {&up, &rate, &age, &valid, &clock, &corrected, &frames, &dropped})
+    out.push_back(std::move(*made));
 }
 
 void append_process(std::vector<MetricFamily>& out) {  // by the names that Prometheus' own clients use

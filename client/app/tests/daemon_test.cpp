@@ -58,6 +58,7 @@ TEST(Daemon, LocatesARobotByItsWheelsAndClouds) {
     std::this_thread::sleep_for(30ms);
   }
   EXPECT_THAT((*daemon)->summary(), HasSubstr("robot1: tracking, server there"));
+  EXPECT_TRUE((*daemon)->check_address()) << "the loopback does not roam";
   EXPECT_THAT((*daemon)->summary(), HasSubstr("ms per localized second"));
   EXPECT_TRUE((*daemon)->stop());
 }

@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
+#include <vector>
 
+#include "common/base/log.hpp"
 #include "common/testing/box_room.hpp"
 
 namespace liloc {
@@ -124,6 +128,20 @@ TEST(ImuTrack, RefusesWhatIsNotFiniteOrNotNewer) {
   EXPECT_TRUE(track.add({kStart, {0, 0, 0}, {0, 0, 9.81}}));
   EXPECT_FALSE(track.add({kStart, {0, 0, 0}, {0, 0, 9.81}}));
   EXPECT_FALSE(track.add({kStart + 1, {NAN, 0, 0}, {0, 0, 9.81}}));
+}
+
+TEST(ImuTrack, DriversOfTwoClocksThatTakeTurnsAreOneLine) {
+  ImuTrack track({});
+  std::vector<std::string> lines;
+  log::set_sink([&](log::Level, std::string_view line) { lines.emplace_back(line); });
+  for (int turn = 0; turn < 20; ++turn)
+    for (int i = 0; i < 5; ++i) {  // the second is twelve seconds behind; the first two of a turn are refused
+      const StampNs stamp_ns = kStart + from_ms(5.0 * (5 * turn + i)) - (turn % 2) * from_seconds(12);
+      (void)track.add({stamp_ns, {0, 0, 0}, {0, 0, 9.81}});
+    }
+  log::set_sink({});
+  EXPECT_EQ(std::ranges::count(lines, "IMU: its clock was set back by 12.0 s"), 1)
+      << testing::PrintToString(lines);
 }
 
 /// A driver with a message for each sensor, zeros for the other.

@@ -194,6 +194,17 @@ class Converted(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
 
+    def test_a_program_of_torchscript_is_refused(self):
+        class Doubling(torch.nn.Module):
+            def forward(self, x):
+                return 2 * x
+
+        torch.jit.save(torch.jit.script(Doubling()), str(self.checkpoint))
+        done = self.convert("--voxel", "0.025")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("TorchScript", done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+
     def test_nothing_of_a_checkpoint_is_run(self):
         proof = self.folder / "proof"
 

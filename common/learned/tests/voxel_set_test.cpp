@@ -97,6 +97,19 @@ TEST(VoxelSet, EmptyHasNothing) {
   EXPECT_EQ(set->find({0, 0, 0}), -1);
 }
 
+TEST(VoxelSet, MoreThanTheMemoryOfTwoGigabytesAreRefused) {
+  const auto block = [](int side) {
+    std::vector<Eigen::Vector3i> voxels;
+    for (int i = 0; i < side * side * side; ++i)
+      voxels.emplace_back(i % side, i / side % side, i / side / side);
+    return VoxelSet::of(voxels);
+  };
+  EXPECT_TRUE(block(73)) << "389 017 voxels";
+  const auto refused = block(74);
+  ASSERT_FALSE(refused) << "405 224 voxels";
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("give larger voxels"));
+}
+
 TEST(VoxelSet, ReachesFarAndNoFarther) {
   const int far = VoxelSet::kReach;
   const auto set = VoxelSet::of({{far, -far, 0}, {0, 0, far}});

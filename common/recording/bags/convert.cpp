@@ -70,12 +70,13 @@ class Outline {
  public:
   Outline(fs::path out, const ConvertOptions& options) : out_(std::move(out)), options_(options) {}
 
-  Status write(const Description& description) {
-    if (Status written = write_site(out_ / "site.json", description.site); !written) return written;
+  Conversion<void> write(const Description& description) {
+    if (Status written = write_site(out_ / "site.json", description.site); !written)
+      return unwritten(written.error());
     for (const GlobalLidar& lidar : description.site.global_lidars)
       streams[options_.lidars.at(lidar.id)] = {out_ / "global" / lidar.id / "depth", lidar.camera};
     for (const DeviceInfo& device : description.devices)
-      if (Status written = write_device(device); !written) return written;
+      if (auto written = write_device(device); !written) return written;
     return {};
   }
 
@@ -83,7 +84,7 @@ class Outline {
   std::map<std::string, Samples, std::less<>> samples;  ///< by topic
 
  private:
-  Status write_device(const DeviceInfo& device) {
+  Conversion<void> write_device(const DeviceInfo& device) {
     const fs::path folder = out_ / "devices" / device.id;
     streams[options_.devices.at(device.id)] = {folder / "depth", device.camera};
     if (const auto topic = options_.imus.find(device.id); topic != options_.imus.end())
@@ -91,9 +92,12 @@ class Outline {
     if (const auto file = options_.truths.find(device.id); file != options_.truths.end()) {
       const auto truth = read_tum(file->second);
       if (!truth) return tl::unexpected(truth.error());
-      if (Status written = write_tum(folder / "groundtruth.tum", *truth); !written) return written;
+      if (const Status written = write_tum(folder / "groundtruth.tum", *truth); !written)
+        return unwritten(written.error());
     }
-    return liloc::write_device(folder / "device.json", device);
+    const Status written = liloc::write_device(folder / "device.json", device);
+    if (!written) return unwritten(written.error());
+    return {};
   }
 
   const fs::path out_;
@@ -101,20 +105,25 @@ class Outline {
 };
 
 /// Frames to their folders, samples to memory; what cannot be used to `left_out`.
-Status read_frames(const fs::path& bag, const ConvertOptions& options, Outline& outline,
-                   LeftOutByTopic& left_out) {
-  return read_bag(bag, [&](const Message& message) -> Status {
-    Status done;
+Conversion<void> read_frames(const fs::path& bag, const ConvertOptions& options, Outline& outline,
+                             LeftOutByTopic& left_out) {
+  Status written;
+  const Status read = read_bag(bag, [&](const Message& message) -> Status {
+    Status taken;
     if (options.stopped && options.stopped()) return fail("{}: stopped by a signal", bag.string());
     LeftOut unusable;
     if (const auto stream = outline.streams.find(message.topic); stream != outline.streams.end())
-      done = write_frame(message, stream->second, unusable);
+      written = write_frame(message, stream->second, unusable);
     else if (const auto imu = outline.samples.find(message.topic); imu != outline.samples.end())
-      done = take_sample(message.cdr, imu->second.all, unusable);
-    if (!done) return fail("{}: {}: {}", bag.string(), message.topic, done.error().message);
+      taken = take_sample(message.cdr, imu->second.all, unusable);
+    if (!written) return written;
+    if (!taken) return fail("{}: {}: {}", bag.string(), message.topic, taken.error().message);
     if (unusable.messages > 0) left_out[std::string(message.topic)].add({unusable.first});
     return {};
   });
+  if (!written) return unwritten(written.error());
+  if (!read) return tl::unexpected(read.error());
+  return {};
 }
 
 /// What the survey left out of all that was used of it; frames and samples are counted when they are read.
@@ -127,19 +136,19 @@ LeftOutByTopic left_out_of(const Survey& survey) {
   return left_out;
 }
 
-Result<Converted> convert(const fs::path& bag, const fs::path& out, const ConvertOptions& options) {
+Conversion<Converted> convert(const fs::path& bag, const fs::path& out, const ConvertOptions& options) {
   const auto survey = survey_bag(bag, topics_of(options), options.stopped);
   if (!survey) return tl::unexpected(survey.error());
   const auto description = describe(bag, *survey, options);
   if (!description) return tl::unexpected(description.error());
   Outline outline(out, options);
-  if (const Status written = outline.write(*description); !written) return tl::unexpected(written.error());
+  if (const auto written = outline.write(*description); !written) return tl::unexpected(written.error());
   Converted converted{{}, left_out_of(*survey)};
-  if (const Status read = read_frames(bag, options, outline, converted.left_out); !read)
+  if (const auto read = read_frames(bag, options, outline, converted.left_out); !read)
     return tl::unexpected(read.error());
   for (const auto& [topic, stream] : outline.streams) converted.messages[topic] = stream.frames;
   for (auto& [topic, samples] : outline.samples) {
-    if (const Status written = write_sorted(samples); !written) return tl::unexpected(written.error());
+    if (const Status written = write_sorted(samples); !written) return unwritten(written.error());
     converted.messages[topic] = samples.all.size();
   }
   for (const auto& [topic, count] : converted.messages)
@@ -149,14 +158,14 @@ Result<Converted> convert(const fs::path& bag, const fs::path& out, const Conver
 
 }  // namespace
 
-Result<Converted> convert_bag(const fs::path& bag, const fs::path& out, const ConvertOptions& options) {
+Conversion<Converted> convert_bag(const fs::path& bag, const fs::path& out, const ConvertOptions& options) {
   if (const auto files = files_of_bag(bag); !files) return tl::unexpected(files.error());
   if (const Status fine = check(options); !fine) return tl::unexpected(fine.error());
   auto folder = NewFolder::beside(out);
   if (!folder) return tl::unexpected(folder.error());
   auto converted = convert(bag, folder->path(), options);
   if (!converted) return converted;
-  if (const Status kept = folder->keep(); !kept) return tl::unexpected(kept.error());
+  if (const Status kept = folder->keep(); !kept) return unwritten(kept.error());
   return converted;
 }
 

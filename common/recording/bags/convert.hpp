@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "common/base/result.hpp"
+#include "common/recording/convert_error.hpp"
 
 namespace liloc::bags {
 
@@ -44,7 +44,8 @@ struct Converted {
 /// anything is wrong it is left as it was. Intrinsics of a topic x/image come from x/camera_info. Messages
 /// that cannot be used are left out and counted. Errors: one line that names file, topic and remedy; also a
 /// topic of which no message can be used.
-[[nodiscard]] Result<Converted> convert_bag(const std::filesystem::path& bag, const std::filesystem::path& out,
-                                            const ConvertOptions& options);
+[[nodiscard]] Conversion<Converted> convert_bag(const std::filesystem::path& bag,
+                                                const std::filesystem::path& out,
+                                                const ConvertOptions& options);
 
 }  // namespace liloc::bags

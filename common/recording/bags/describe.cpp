@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "common/base/distinct_topics.hpp"
 #include "common/base/ids.hpp"
 
 namespace liloc::bags {
@@ -118,9 +119,13 @@ std::vector<std::string> topics_of(const ConvertOptions& options) {
 
 Status check(const ConvertOptions& options) {
   if (options.lidars.empty()) return fail("--lidar: none is given; a recording needs one; give ID=TOPIC");
+  std::vector<std::string> sensors;
   for (const auto* names : {&options.lidars, &options.devices})
-    for (const auto& [id, topic] : *names)
+    for (const auto& [id, topic] : *names) {
       if (const auto valid = valid_id(id, "id"); !valid) return tl::unexpected(valid.error());
+      sensors.push_back(id);
+    }
+  if (const Status distinct = check_distinct_topics(sensors); !distinct) return distinct;
   if (const auto world = valid_id(options.world_frame, "--world"); !world) return tl::unexpected(world.error());
   const auto orphan = [&](const auto& ids) {
     return std::ranges::find_if(ids, [&](const auto& of) { return !options.devices.contains(of.first); });

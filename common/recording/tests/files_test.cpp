@@ -1,10 +1,8 @@
 #include "common/recording/files.hpp"
 
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 
-#include <csignal>
-
+#include "common/recording/tests/file_limit.hpp"
 #include "common/recording/tests/temporary_folder.hpp"
 
 namespace liloc {
@@ -46,15 +44,13 @@ TEST(Files, WhereNoneCanBeWrittenWhatWasThereStays) {
   fs::create_directories(folder.path() / "full/inner");
   EXPECT_THAT(write_file(folder.path() / "full", "text").error().message,
               HasSubstr("check what stands in its place"));
-  rlimit unlimited{};
-  ::getrlimit(RLIMIT_FSIZE, &unlimited);
-  const rlimit small{10, unlimited.rlim_max};
-  auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
-  ::setrlimit(RLIMIT_FSIZE, &small);  // as where a disk is full
-  const Status refused = write_file(file, "a text of more than ten bytes");
-  ::setrlimit(RLIMIT_FSIZE, &unlimited);
-  std::signal(SIGXFSZ, handler);
-  EXPECT_FALSE(refused);
+  Status refused;
+  {
+    const FileLimit full(10);
+    refused = write_file(file, "a text of more than ten bytes");
+  }
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("a: cannot be written: File too large; check the folder's"));
   EXPECT_EQ(*read_file(file, 100), "before");
   EXPECT_EQ(entries(folder.path()), 2U) << "no part of what failed is left";
 }

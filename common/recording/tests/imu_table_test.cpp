@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "common/recording/recording.hpp"
+#include "common/recording/tests/file_limit.hpp"
 #include "common/recording/tests/temporary_folder.hpp"
 
 namespace liloc {
@@ -24,7 +25,7 @@ TEST(ImuTable, LeavesOutWhatDoesNotRiseSoThatReadersTakeIt) {
   EXPECT_FALSE(table.add(at(4)));
   EXPECT_TRUE(table.add(at(6)));
   EXPECT_EQ(table.rows(), 2U);
-  ASSERT_TRUE(table.close());
+  EXPECT_TRUE(table.written());
   const auto read = read_imu(file);
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->size(), 2U);
@@ -36,11 +37,27 @@ TEST(ImuTable, WhereItCannotBeMadeOrWrittenIsTold) {
   const TemporaryFolder folder;
   ImuTable nowhere, full;
   EXPECT_THAT(nowhere.open(folder.put("a", "") / "imu.csv").error().message,
-              HasSubstr("imu.csv: cannot be written"));
-  ASSERT_TRUE(full.open("/dev/full"));  // which the stream's memory hides until it is emptied
-  EXPECT_TRUE(full.add(at(1)));
-  EXPECT_THAT(full.close().error().message,
-              HasSubstr("/dev/full: cannot be written; check the folder's free space"));
+              HasSubstr("imu.csv: Not a directory: check the folder's permissions and space"));
+  EXPECT_THAT(full.open("/dev/full").error().message, HasSubstr("/dev/full: No space left on device"));
+}
+
+TEST(ImuTable, ASampleThatDoesNotFitLeavesWholeRows) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "imu.csv";
+  ImuTable table;
+  ASSERT_TRUE(table.open(file));
+  ASSERT_TRUE(table.add(at(1)));
+  {
+    const FileLimit full(std::filesystem::file_size(file) + 20);  // half a row more
+    EXPECT_FALSE(table.add(at(2)));
+  }
+  EXPECT_FALSE(table.add(at(3))) << "or one would be missing in between";
+  EXPECT_EQ(table.rows(), 1U);
+  ASSERT_FALSE(table.written());
+  EXPECT_THAT(table.written().error().message, HasSubstr("imu.csv: File too large: nothing more is written"));
+  const auto read = read_imu(file);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->size(), 1U);
 }
 
 }  // namespace

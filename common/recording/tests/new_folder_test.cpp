@@ -39,6 +39,27 @@ TEST(NewFolder, WhatAKilledOneLeftIsTakenAwayAndAFullFolderIsNot) {
   EXPECT_TRUE(fs::exists(temporary.path() / "rec/theirs"));
 }
 
+TEST(NewFolder, WhereNothingCanBeMadeItSaysSoAtOnce) {
+  const TemporaryFolder temporary;
+  temporary.put("file", "no folder");
+  const auto folder = NewFolder::beside(temporary.path() / "file/rec");
+  ASSERT_FALSE(folder);
+  EXPECT_NE(folder.error().message.find("file/rec: cannot be made"), std::string::npos)
+      << folder.error().message;
+}
+
+TEST(NewFolder, WhatWasMadeAboveItGoesWithIt) {
+  const TemporaryFolder temporary;
+  {
+    const auto folder = NewFolder::beside(temporary.path() / "a/b/rec");
+    ASSERT_TRUE(folder);
+    EXPECT_TRUE(fs::is_directory(folder->path()));
+    ASSERT_TRUE(write_file(temporary.path() / "a/theirs", "came in between"));
+  }
+  EXPECT_TRUE(fs::exists(temporary.path() / "a/theirs"));
+  EXPECT_FALSE(fs::exists(temporary.path() / "a/b"));
+}
+
 TEST(NewFolder, MovedOnTheFirstKeepsNothingFromTheSecond) {
   const TemporaryFolder temporary;
   auto first = NewFolder::beside(temporary.path() / "rec");

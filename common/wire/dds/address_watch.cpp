@@ -40,12 +40,13 @@ std::set<std::string> addresses_of(const std::string& interface) {
   return found;
 }
 
-bool AddressWatch::changed() {
+bool AddressWatch::changed(bool reached) {
   std::set<std::string> now = addresses_();
   if (now.empty()) return false;  // it is between two networks
-  const bool gone = !std::ranges::includes(now, known_);
-  known_ = std::move(now);
-  return gone;
+  const bool gone = !std::ranges::includes(now, joined_), come = !std::ranges::includes(joined_, now);
+  if (!gone && (reached || !come)) return false;
+  joined_ = std::move(now);
+  return true;
 }
 
 }  // namespace liloc::wire

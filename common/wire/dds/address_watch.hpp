@@ -9,19 +9,23 @@ namespace liloc::wire {
 /// is given and some interface has it. Empty where there are none now.
 [[nodiscard]] std::set<std::string> addresses_of(const std::string& interface);
 
-/// Notices that an address is gone and another has come, as when a device roams: DDS reads addresses when a
-/// participant is made, tells them to all others, and never again. Not thread-safe.
+/// Notices that DDS has to join the network anew: it reads addresses when a participant is made, tells them to
+/// all others, and never again. Not thread-safe.
 class AddressWatch {
  public:
   using Addresses = std::function<std::set<std::string>()>;
-  explicit AddressWatch(Addresses addresses) : addresses_(std::move(addresses)), known_(addresses_()) {}
+  /// To be made just before a participant is.
+  explicit AddressWatch(Addresses addresses) : addresses_(std::move(addresses)), joined_(addresses_()) {}
 
-  /// Whether one of those before is gone, once there is one again; once for each change.
-  [[nodiscard]] bool changed();
+  /// Whether to join anew now, over what there is now; once for each change, and not while there is no address.
+  /// So it is where an address of those at the last join is gone (nobody knows which of them DDS uses), and,
+  /// where no server is `reached` over those, also where another has come: "auto" takes what there is, as a
+  /// bridge for containers before the radio is up. One that came later and is gone again was never used.
+  [[nodiscard]] bool changed(bool reached);
 
  private:
   const Addresses addresses_;
-  std::set<std::string> known_;
+  std::set<std::string> joined_;  ///< with which DDS joined last
 };
 
 }  // namespace liloc::wire

@@ -3,33 +3,14 @@
 #include <dds/dds.h>
 
 #include <cstdlib>
-#include <map>
-#include <mutex>
 
 #include "common/wire/dds/entity.hpp"
 #include "common/wire/dds/log_sink.hpp"
 #include "common/wire/dds/security.hpp"
+#include "common/wire/dds/shared_domain.hpp"
 
 namespace liloc::wire {
 namespace {
-
-/// DDS allows one configuration a domain and process: participants of one domain share it, the last one ends
-/// it.
-Result<std::shared_ptr<Entity>> configured_domain(const DomainOptions& options) {
-  static std::mutex mutex;
-  static std::map<int, std::weak_ptr<Entity>> domains;
-  const std::scoped_lock lock(mutex);
-  auto& known = domains[options.domain];
-  if (auto domain = known.lock()) return domain;
-  const auto xml = profile_xml(options);
-  if (!xml) return tl::unexpected(xml.error());
-  auto entity = checked(dds_create_domain(static_cast<dds_domainid_t>(options.domain), xml->c_str()),
-                        fmt::format("domain {} on interface {}", options.domain, options.interface));
-  if (!entity) return tl::unexpected(entity.error());
-  auto domain = std::make_shared<Entity>(std::move(*entity));
-  known = domain;
-  return domain;
-}
 
 bool profile_of_user() {
   const char* uri = std::getenv("CYCLONEDDS_URI");
@@ -55,7 +36,7 @@ Result<Participant> Participant::create(const DomainOptions& options) {
   auto impl = std::make_shared<Impl>();
   impl->domain_id = options.domain;
   if (!profile_of_user()) {
-    auto domain = configured_domain(options);
+    auto domain = shared_domain(options);
     if (!domain) return tl::unexpected(domain.error());
     impl->domain = std::move(*domain);
   }

@@ -2,6 +2,13 @@
 #include "common/wire/sensors/convert_sensors.hpp"
 
 namespace liloc::wire {
+namespace {
+
+// What bounds the arithmetic alone: degrees per second, millimetres and wild samples are known for that by
+// whoever compares them with the motion, and counted there. By hand.
+constexpr double kMostRate = 1e4, kMostForce = 1e5;
+
+}  // namespace
 
 std_msgs_msg_dds__Header_ header_of(StampNs stamp_ns, const std::string& frame_id) {
   std_msgs_msg_dds__Header_ header{};
@@ -17,11 +24,12 @@ Result<ImuSample> from_wire(const sensor_msgs_msg_dds__Imu_& m) {
   const auto& w = m.angular_velocity;
   const auto& a = m.linear_acceleration;
   const ImuSample sample{*stamp_ns, {w.x, w.y, w.z}, {a.x, a.y, a.z}};
-  if (!(sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() < 200) ||
+  if (!(sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() < kMostRate) ||
       !sample.angular_velocity_rad_s.allFinite())
-    return fail("angular_velocity is ({}, {}, {}) rad/s, must be within 200", w.x, w.y, w.z);
-  if (!(sample.specific_force_m_s2.cwiseAbs().maxCoeff() < 2000) || !sample.specific_force_m_s2.allFinite())
-    return fail("linear_acceleration is ({}, {}, {}) m/s^2, must be within 2000", a.x, a.y, a.z);
+    return fail("angular_velocity is ({}, {}, {}) rad/s, must be within {}", w.x, w.y, w.z, kMostRate);
+  if (!(sample.specific_force_m_s2.cwiseAbs().maxCoeff() < kMostForce) ||
+      !sample.specific_force_m_s2.allFinite())
+    return fail("linear_acceleration is ({}, {}, {}) m/s^2, must be within {}", a.x, a.y, a.z, kMostForce);
   return sample;
 }
 

@@ -59,9 +59,11 @@ class Post {
 class Network : public testing::Test {
  protected:
   void SetUp() override {
-    if (const Status entered = enter_own_namespaces(); !entered) GTEST_SKIP() << entered.error().message;
+    if (const Status may = permitted(); !may) GTEST_SKIP() << may.error().message;
+    const Status entered = enter_own_namespaces();
+    ASSERT_TRUE(entered) << entered.error().message;
     auto made = BadNetwork::create({"a", "b"}, 7);
-    if (!made) GTEST_SKIP() << made.error().message;
+    ASSERT_TRUE(made) << made.error().message;
     network_ = std::move(*made);
     a_.emplace(network_->host("a"));
     b_.emplace(network_->host("b"));

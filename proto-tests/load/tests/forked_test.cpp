@@ -52,5 +52,28 @@ TEST(Forked, EndsWithItsOwner) {
   close(ends[0]);
 }
 
+TEST(Rows, AreTakenInTheOrderInWhichTheyWereAppended) {
+  struct Row {
+    double at_s;
+    bool good;
+  };
+  std::string bytes;
+  append_rows(std::vector<Row>{{1.5, true}, {2.5, false}}, bytes);
+  append_rows(std::vector<std::uint64_t>{}, bytes);
+  append_rows(std::vector<std::uint64_t>{7}, bytes);
+  std::string_view rest = bytes;
+  std::vector<Row> rows{{0.5, false}};
+  std::vector<std::uint64_t> counts;
+  take_rows(rest, rows);
+  take_rows(rest, counts);
+  EXPECT_TRUE(counts.empty());
+  take_rows(rest, counts);
+  ASSERT_EQ(rows.size(), 3U) << "those of several processes are put together";
+  EXPECT_EQ(rows[2].at_s, 2.5);
+  EXPECT_TRUE(rows[1].good);
+  EXPECT_EQ(counts, std::vector<std::uint64_t>{7});
+  EXPECT_TRUE(rest.empty());
+}
+
 }  // namespace
 }  // namespace liloc::load

@@ -39,11 +39,18 @@ TEST(SoakGrowth, WhatComesAndGoesIsNoGrowth) {
   EXPECT_THAT(trend.slope_per_h, DoubleNear(0, 3));
 }
 
-TEST(SoakGrowth, TheSpreadIsBetweenTheQuartilesOfTheFirstThird) {
-  const Trend trend = trend_of(samples(300, [](double s) { return s < 100 ? std::fmod(s, 5) : 7; }), 0);
-  EXPECT_EQ(trend.first, 2);
-  EXPECT_EQ(trend.spread, 2);
-  EXPECT_EQ(trend.last, 7);
+// As a server's memory that comes and goes by 300 MB with the rooms that sessions look back at.
+TEST(SoakGrowth, WhatBreathesHidesNoLeak) {
+  const auto breath = [](double s) { return 300 + 150 * std::sin(s / 3); };
+  EXPECT_THAT(trend_of(samples(600, breath), 120).growth(), DoubleNear(0, 3));
+  EXPECT_THAT(trend_of(samples(600, [&](double s) { return breath(s) + 0.1 * s; }), 120).growth(),
+              DoubleNear(32, 5));
+}
+
+TEST(SoakGrowth, AThirdIsAsLongAsItsSamplesReach) {
+  EXPECT_NEAR(trend_of(samples(600, [](double) { return 1; }), 120).third_s, 160, 1);
+  EXPECT_NEAR(trend_of(samples(100, [](double) { return 1; }), 25).third_s, 25, 1);
+  EXPECT_EQ(trend_of({{0, 1}, {1, 2}}, 0).third_s, 0);
 }
 
 TEST(SoakGrowth, TheWarmUpCountsNot) {

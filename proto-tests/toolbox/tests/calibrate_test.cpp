@@ -101,6 +101,17 @@ TEST_F(Calibrate, WithoutAScanTrustsTheOthersNoMoreThanTheFirst) {
   for (const auto& lidar : lidars) EXPECT_TRUE(first || lidar.at("doubt") != "") << lidar;
 }
 
+TEST_F(Calibrate, RefusesAScanInCoordinatesOfASurvey) {
+  std::ofstream(path("far.ply"))
+      << "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double "
+         "z\nend_header\n691608 5334765 520\n691609 5334765 520\n691608 5334766 521\n";
+  const Outcome outcome = calibrate("--reference " + path("far.ply") + " --out " + path("x.json"));
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("far.ply"));
+  EXPECT_THAT(outcome.out, HasSubstr("subtract [69160"));
+  EXPECT_FALSE(fs::exists(path("x.json")));
+}
+
 TEST_F(Calibrate, NamesTheFileThatIsWrong) {
   const Outcome outcome = calibrate("--reference " + path("no.ply") + " --out " + path("x.json"));
   EXPECT_NE(outcome.exit_code, 0);

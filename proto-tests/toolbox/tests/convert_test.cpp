@@ -96,6 +96,29 @@ TEST_F(Convert, TumThereAndBack) {
     ASSERT_NEAR(after->units[i] * 0.0002, before->units[i] * camera.depth_scale_m, 0.0001 + 1e-9);
 }
 
+TEST_F(Convert, AFullDiskIsToldAndLeavesNothing) {
+  const Camera camera = read_device(path("rec/devices/device0/device.json"))->camera;
+  ASSERT_EQ(liloc("convert " + path("rec") + " " + path("tum") + " --to tum").exit_code, 0);
+  const std::string of_bag = topics() + " " + bag();
+  for (const std::string& arguments :
+       {"convert" + of_bag + " " + path("disk/new"),
+        "convert " + path("rec") + " " + path("disk/new") + " --to tum",
+        fmt::format("convert {} {} --device device0 --camera {},{},{},{},{},{}", path("tum/device0"),
+                    path("disk/new"), camera.width, camera.height, camera.fx, camera.fy, camera.cx,
+                    camera.cy)}) {
+    const Outcome full = on_full_disk(200, arguments);
+    expect_told_as_full(full);
+    EXPECT_THAT(full.out, HasSubstr("/depth/")) << "of a frame";
+    EXPECT_TRUE(fs::is_empty(path("left"))) << arguments;
+    fs::remove_all(path("left"));
+  }
+  ::setenv("TMPDIR", path("disk").c_str(), 1);
+  const Outcome replayed = on_full_disk(200, "replay" + of_bag + " --lockstep --out " + path("out"));
+  ::unsetenv("TMPDIR");
+  expect_told_as_full(replayed);
+  EXPECT_TRUE(fs::is_empty(path("left")));
+}
+
 TEST_F(Convert, BadUsageIsOneLineAndLeavesNothing) {
   const auto wrong = [&](const std::string& arguments, const std::string& part) {
     expect_refused("convert " + arguments, part, "new");

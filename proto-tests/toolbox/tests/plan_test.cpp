@@ -134,6 +134,23 @@ TEST_F(Plan, AScanInMillimetresIsNamed) {
   refuses("--reference " + written("mm.ply", ply) + " --lidars 2", "in metres?");
 }
 
+TEST_F(Plan, AScanInCoordinatesOfASurveyIsToldWhatToSubtract) {
+  std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 8000\nproperty double x\nproperty double y\nproperty double "
+      "z\nend_header\n";
+  for (int i = 0; i < 8000; ++i)
+    ply += fmt::format("{} {} 520\n", 691'608 + 0.05 * (i % 100), 5'334'765 + 0.05 * (i / 100));
+  refuses("--reference " + written("far.ply", ply) + " --lidars 2", "subtract [69161");
+}
+
+// Before the scan is looked at, which is none: what would be thrown away after its work is told at once.
+TEST_F(Plan, AnOutThatCannotBeMadeIsToldBeforeTheWork) {
+  const std::string out = written("file", "no folder") + "/out";
+  const Outcome told = liloc("plan --reference " + path("no.ply") + " --lidars 1 --out " + out);
+  expect_complaint(told, 2, "--out: ");
+  EXPECT_THAT(told.out, HasSubstr("cannot be made"));
+}
+
 TEST_F(Plan, AFolderThatHoldsAnythingIsLeftAlone) {
   (void)written("out/mine.txt", "mine");
   expect_complaint(liloc("plan " + scan() + "--lidars 1 --out " + path("out")), 2, "--out");

@@ -68,6 +68,31 @@ TEST_F(Record, AKillLeavesWhatHadComeUntilThen) {
   EXPECT_LT(std::abs(device.imu.back().stamp_ns - device.depth.back().stamp_ns), from_ms(1000));
 }
 
+TEST_F(Record, AFullDiskEndsItAndLeavesWholeFrames) {
+  const std::jthread site = streaming(5);
+  const Outcome full =
+      on_full_disk(600, fmt::format("record {} --site {} --device {} --domain 151 --seconds 60",
+                                    path("disk/rec"), path("site/site.json"), path("site/device0.json")));
+  expect_told_as_full(full);
+  for (const auto& entry : fs::recursive_directory_iterator(path("left/rec")))
+    EXPECT_FALSE(entry.path().extension() == ".part") << entry.path();
+  const auto recording = open_recording(path("left/rec"));
+  ASSERT_TRUE(recording) << recording.error().message;
+  std::size_t frames = 0;
+  const auto read = [&](const std::vector<DepthFile>& files, const Camera& camera) {
+    for (const DepthFile& frame : files) {
+      const auto image = read_depth(frame, camera);
+      EXPECT_TRUE(image) << image.error().message;
+      ++frames;
+    }
+  };
+  for (const LidarRecording& lidar : recording->lidars) read(lidar.depth, lidar.info.camera);
+  for (const DeviceRecording& device : recording->devices) read(device.depth, device.info.camera);
+  if (full.out.find("No space left") != std::string::npos) {  // else no frame fits into a file
+    EXPECT_GT(frames, 3U);
+  }
+}
+
 TEST_F(Record, SilenceIsToldAndADeviceWithoutFramesIsLeftOut) {
   const Camera camera{80, 60, 60, 60, 39.5, 29.5, 0.001};
   ASSERT_TRUE(write_site(path("site.json"), {"map", {{"ceiling0", camera, 6, Pose::Identity()}}}));
@@ -92,6 +117,11 @@ TEST_F(Record, BadUsageIsOneLineAndLeavesNothing) {
   wrong(path("rec") + " --site " + path("absent.json"), "no such file");
   wrong(path("rec") + " --domain 152 --site " + path("site.json") + " --device " + path("twin.json"),
         "two sensors have this id");
+  ASSERT_TRUE(write_device(path("one.json"), {"robot-1", camera, 15, 0, {}, {}}));
+  ASSERT_TRUE(write_device(path("other.json"), {"robot_1", camera, 15, 0, {}, {}}));
+  wrong(path("rec") + " --domain 152 --site " + path("site.json") + " --device " + path("one.json") +
+            " --device " + path("other.json"),
+        "robot-1 and robot_1 are one in the names of topics");
 }
 
 TEST_F(Record, WhatStandsInTheWayIsLeftAlone) {

@@ -5,9 +5,12 @@
 #include <chrono>
 #include <functional>
 #include <future>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
+#include "common/base/log.hpp"
 #include "server/localization/tests/world.hpp"
 #include "server/localization/verification.hpp"
 
@@ -189,12 +192,16 @@ TEST(Localizer, ASearchThatWasCutOffIsNotBelieved) {
   LocalizerOptions options;
   options.search_limit = std::chrono::seconds(0);
   World world(2, options);
+  std::vector<std::string> lines;
+  log::set_sink([&](log::Level, std::string_view line) { lines.emplace_back(line); });
   for (int k = 0; k < 4; ++k) {
     const SpotReply reply = world.ask(k);
     EXPECT_EQ(reply.status, SpotStatus::refused) << "what it did not reach may look alike";
     EXPECT_EQ(reply.reason, Reason::overloaded);
     EXPECT_THAT(reply.text, testing::HasSubstr("cut off"));
   }
+  log::set_sink({});
+  EXPECT_THAT(lines, testing::ElementsAre(testing::HasSubstr("cut off after 0.0 s")));
 }
 
 TEST(Localizer, ATrackedDevicesRoutineSearchWaitsForSpareTimeButNotForever) {

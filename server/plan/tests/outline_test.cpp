@@ -50,6 +50,18 @@ TEST(Outline, AGapInTheOuterWallIsNamed) {
   EXPECT_THAT(extruded(blank_outline({0, 0}, {5, 5}).value(), 3).error().message, HasSubstr("close the gaps"));
 }
 
+// Stripes of wall and of floor: a hundred thousand cells of wall, 601 points each.
+TEST(Outline, MoreWallsThanMemoryHoldsAreRefused) {
+  Outline outline = blank_outline({0, 0}, {20, 20}).value();
+  for (int y = 0; y < outline.height; ++y)
+    for (int x = 0; x < outline.width; ++x)
+      if (x % 3 != 0 || y < 9 || y > outline.height - 9) outline.at(x, y) = 1;
+  const auto cloud = extruded(outline, 30);
+  ASSERT_FALSE(cloud);
+  EXPECT_THAT(cloud.error().message, HasSubstr("million points"));
+  EXPECT_THAT(cloud.error().message, HasSubstr("hatches"));
+}
+
 TEST(Outline, AnotherUnitIsNamed) {
   EXPECT_THAT(blank_outline({0, 0}, {5000, 4000}).error().message, HasSubstr("--scale"));
   EXPECT_THAT(blank_outline({0, 0}, {0.5, 0.4}).error().message, HasSubstr("--scale"));

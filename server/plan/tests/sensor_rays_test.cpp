@@ -20,6 +20,7 @@ TEST(SensorRays, SeesWhatIsBeforeItAndNothingBehindAWall) {
   ASSERT_GT(seen.size(), 200U);
   EXPECT_TRUE(std::ranges::is_sorted(seen));
   EXPECT_EQ(std::ranges::adjacent_find(seen), seen.end());
+  EXPECT_EQ(seen.capacity(), seen.size()) << "many views are kept at once";
   for (const Surface s : seen) EXPECT_LT(room().point_map(s).x(), 4.55F);
 }
 

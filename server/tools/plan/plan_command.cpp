@@ -108,7 +108,9 @@ void declare_room(CLI::App& command, PlanArguments& a) {
       "--floor-plan", a.floor_plan,
       "In place of a scan: walls drawn dark in a PNG, or the lines of an ASCII DXF; the outer wall "
       "without gaps");
-  command.add_option("--scale", a.scale_m, "Metres per pixel of the PNG, or per unit of a DXF that names none")
+  command
+      .add_option("--scale", a.scale_m,
+                  "Metres per pixel of the PNG, or per unit of the DXF, whatever unit it names")
       ->check(command::in_range(1e-4, 10.0));
   command.add_option("--height", a.height_m, "Metres from floor to ceiling, where the input does not show it")
       ->check(command::in_range(2.0, 30.0));
@@ -158,7 +160,9 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->footer(
       "A device pose is localizable where a single request from it, answered on its own, would be verified. "
       "The "
-      "prediction knows nothing of people, of what moves, and of a drawing's furniture.");
+      "prediction knows nothing of people, of what moves, and of a drawing's furniture. It was fitted to "
+      "simulated sensors with little "
+      "noise: noisier ones are verified far less often.");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -65,7 +65,7 @@ Result<double> ceiling_of(const PlanArguments& arguments, const plan::FreeFloor&
 Result<PlanInput> room_of(const PlanArguments& arguments) {
   const bool scanned = !arguments.reference.empty();
   const std::string& file = scanned ? arguments.reference : arguments.floor_plan;
-  const auto cloud = scanned ? read_cloud_file(file) : floor_plan_cloud(arguments);
+  const auto cloud = scanned ? read_map_scan(file) : floor_plan_cloud(arguments);
   if (!cloud) return tl::unexpected(cloud.error());
   auto room = plan::VoxelRoom::create(*cloud);
   if (!room) return fail("{}: {}", file, room.error().message);

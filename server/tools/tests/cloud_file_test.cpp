@@ -54,6 +54,29 @@ TEST(CloudFile, WhatLiesFarFromItsOriginIsPlacedAboutItsMiddle) {
   EXPECT_EQ(near->cloud.points[2], Eigen::Vector3f(100, 0, 7));
 }
 
+TEST(CloudFile, AScanOfTheMapLiesNearItsOriginOrSaysWhatToSubtract) {
+  const TemporaryFolder folder;
+  std::vector<Eigen::Vector3d> far, near;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d p(0.1 * i, 0.05 * i, 0.02 * i);
+    far.push_back(Eigen::Vector3d(691'608, 5'334'765, 520) + p);
+    near.push_back(Eigen::Vector3d(400, -900, 30) + p);
+  }
+  for (const char* type : {"double", "float"}) {
+    const bool wide = std::string(type) == "double";
+    const std::string text = wide ? test::ply_of<double>(far, "binary_little_endian", type)
+                                  : test::ply_of<float>(far, "binary_little_endian", type);
+    const auto refused = read_map_scan(folder.put("far.ply", text));
+    ASSERT_FALSE(refused) << type;
+    EXPECT_THAT(refused.error().message, HasSubstr("far.ply"));
+    EXPECT_THAT(refused.error().message, HasSubstr("subtract [6916"));
+  }
+  const auto read = read_map_scan(folder.put("near.ply", test::ply_of<double>(near, "ascii", "double")));
+  ASSERT_TRUE(read) << read.error().message;
+  for (std::size_t i = 0; i < near.size(); ++i)
+    EXPECT_LT((read->points[i].cast<double>() - near[i]).norm(), 1e-4) << "it stays where it is";
+}
+
 TEST(CloudFile, IntegersArePointsToo) {
   const TemporaryFolder folder;
   const std::vector<Eigen::Vector3d> whole{{1, -2, 3}, {40, 50, 60}};

@@ -19,7 +19,7 @@ ServerFacts busy() {
   facts.service.clients_verified = 2;
   facts.service.clients_refused = 1;
   facts.samples_lost = 11;
-  facts.lidars.push_back({{"ceiling0", wire::LidarState::ok, 7.5, 100, 2, "", 0.75}, 0.25});
+  facts.lidars.push_back({{"ceiling0", wire::LidarState::ok, 7.5, 100, 2, "", 0.75, 2.4, 2.4, 37, true}, 0.25});
   facts.lidars.push_back({{"ceiling1", wire::LidarState::waiting, 0, 0, 0, ""}, std::nullopt});
   return facts;
 }
@@ -31,10 +31,13 @@ TEST(Metrics, TellWhatTheServerIsNow) {
         "liloc_clients{state=\"verified\"} 2", "liloc_clients{state=\"none\"} 1",
         "liloc_lidar_up{lidar=\"ceiling0\"} 1", "liloc_lidar_up{lidar=\"ceiling1\"} 0",
         "liloc_lidar_rate_hz{lidar=\"ceiling0\"} 7.5", "liloc_lidar_valid_share{lidar=\"ceiling0\"} 0.75",
-        "liloc_lidar_dropped_total{lidar=\"ceiling0\"} 2", "liloc_gpc_age_seconds 0.25",
-        "liloc_dds_samples_lost_total 11", "# TYPE liloc_lidar_frames_total counter"})
+        "liloc_lidar_clock_offset_seconds{lidar=\"ceiling0\"} 37",
+        "liloc_lidar_clock_corrected{lidar=\"ceiling0\"} 1", "liloc_lidar_dropped_total{lidar=\"ceiling0\"} 2",
+        "liloc_gpc_age_seconds 0.25", "liloc_dds_samples_lost_total 11",
+        "# TYPE liloc_lidar_frames_total counter"})
     EXPECT_THAT(text, HasSubstr(line));
   EXPECT_THAT(text, Not(HasSubstr("liloc_lidar_age_seconds{lidar=\"ceiling1\"}")));  // it has sent nothing
+  EXPECT_THAT(text, Not(HasSubstr("liloc_lidar_clock_offset_seconds{lidar=\"ceiling1\"}")));
   EXPECT_THAT(text, HasSubstr("process_resident_memory_bytes "));
 }
 

@@ -189,6 +189,10 @@ TEST_F(Trouble, TopicsThatDoNotFitAreNamedWithThoseThatWould) {
   options = all_sensors();
   options.world_frame = "the map";
   EXPECT_THAT(message(bag, options), HasSubstr("--world"));
+  options = all_sensors();
+  options.devices["a-1"] = "/a";
+  options.devices["a_1"] = "/b";
+  EXPECT_THAT(message(bag, options), HasSubstr("a-1 and a_1 are one in the names of topics"));
 }
 
 TEST_F(Trouble, ABagWithoutDepthSaysSo) {

@@ -7,35 +7,66 @@ namespace {
 
 using Set = std::set<std::string>;
 
+constexpr bool kReached = true;
+const Set kRadio{"10.0.0.4"}, kElsewhere{"10.0.0.9"}, kBridge{"172.17.0.1"}, kBoth{"10.0.0.4", "172.17.0.1"};
+
+/// An interface whose addresses a test sets.
+struct Interface {
+  explicit Interface(Set at_join) : now(std::move(at_join)) {}
+  Set now;
+  AddressWatch watch{[this] { return now; }};
+  [[nodiscard]] bool changed(const Set& to, bool reached = kReached) {
+    now = to;
+    return watch.changed(reached);
+  }
+};
+
 TEST(AddressWatch, TellsOnceThatAnAddressWasReplaced) {
-  Set now{"10.0.0.4"};
-  AddressWatch watch([&] { return now; });
-  EXPECT_FALSE(watch.changed());
-  now = {"10.0.0.9"};
-  EXPECT_TRUE(watch.changed());
-  EXPECT_FALSE(watch.changed());
+  for (const bool reached : {true, false}) {
+    Interface radio(kRadio);
+    EXPECT_FALSE(radio.changed(kRadio, reached));
+    EXPECT_TRUE(radio.changed(kElsewhere, reached));
+    EXPECT_FALSE(radio.changed(kElsewhere, reached));
+  }
 }
 
 TEST(AddressWatch, WaitsUntilThereIsAnotherAndForgivesTheSame) {
-  Set now{"10.0.0.4"};
-  AddressWatch watch([&] { return now; });
-  now = {};
-  EXPECT_FALSE(watch.changed());
-  now = {"10.0.0.4"};
-  EXPECT_FALSE(watch.changed()) << "a cable was pulled and plugged in again";
-  now = {};
-  EXPECT_FALSE(watch.changed());
-  now = {"10.0.0.5"};
-  EXPECT_TRUE(watch.changed());
+  Interface radio(kRadio);
+  EXPECT_FALSE(radio.changed({}));
+  EXPECT_FALSE(radio.changed(kRadio)) << "a cable was pulled and plugged in again";
+  EXPECT_FALSE(radio.changed({}));
+  EXPECT_TRUE(radio.changed(kElsewhere));
 }
 
-TEST(AddressWatch, OneMoreAddressChangesNothing) {
-  Set now{"10.0.0.4"};
-  AddressWatch watch([&] { return now; });
-  now = {"10.0.0.4", "172.17.0.1"};
-  EXPECT_FALSE(watch.changed());
-  now = {"10.0.0.4"};
-  EXPECT_TRUE(watch.changed()) << "nobody knows which of them DDS uses";
+TEST(AddressWatch, ASecondInterfaceThatComesAndGoesWasNeverUsed) {
+  Interface automatic(kRadio);
+  EXPECT_FALSE(automatic.changed(kBoth));
+  EXPECT_FALSE(automatic.changed(kRadio));
+  EXPECT_FALSE(automatic.changed(kBoth));
+  EXPECT_TRUE(automatic.changed({"10.0.0.9", "172.17.0.1"})) << "the first is replaced";
+}
+
+TEST(AddressWatch, OneOfTwoThatWereThereIsMissed) {
+  Interface automatic(kBoth);
+  EXPECT_TRUE(automatic.changed(kRadio)) << "nobody knows which of them DDS uses";
+  EXPECT_FALSE(automatic.changed(kRadio));
+}
+
+TEST(AddressWatch, WithoutAServerItJoinsOverWhatComes) {
+  Interface automatic(kBridge);
+  EXPECT_FALSE(automatic.changed(kBoth, kReached));
+  EXPECT_TRUE(automatic.changed(kBoth, !kReached));
+  EXPECT_FALSE(automatic.changed(kBoth, !kReached)) << "once";
+  Interface none({});  // DDS has taken the loopback, which is no address of "auto"
+  EXPECT_FALSE(none.changed({}, !kReached));
+  EXPECT_TRUE(none.changed(kRadio, !kReached));
+}
+
+TEST(AddressWatch, ARadioThatRoamsBesideABridgeIsFollowedBack) {
+  Interface automatic(kBoth);
+  EXPECT_TRUE(automatic.changed(kBridge)) << "between two networks only the bridge is there";
+  EXPECT_TRUE(automatic.changed({"10.0.0.9", "172.17.0.1"}, !kReached));
+  EXPECT_FALSE(automatic.changed({"10.0.0.9", "172.17.0.1"}, !kReached));
 }
 
 TEST(Addresses, OfTheLoopbackByNameAndByAddressAndNeverByAuto) {

@@ -212,6 +212,10 @@ TEST(ConvertImu, RoundTripAndHostileFields) {
   EXPECT_EQ(back->stamp_ns, sample.stamp_ns);
   EXPECT_EQ(back->angular_velocity_rad_s, sample.angular_velocity_rad_s);
   EXPECT_EQ(back->specific_force_m_s2, sample.specific_force_m_s2);
+  auto in_degrees = message;
+  in_degrees.angular_velocity.x = 300;
+  in_degrees.linear_acceleration.z = 9810;
+  EXPECT_TRUE(from_wire(in_degrees)) << "who knows the motion names the unit, and counts what is wild";
   auto spun = message;
   spun.angular_velocity.y = kNan;
   expect_refused(spun, "angular_velocity");

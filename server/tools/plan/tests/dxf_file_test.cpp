@@ -99,6 +99,26 @@ TEST_F(DxfFile, TooManyWallsAreRefused) {
   expect_fails(entities(many), "over 100000 walls");
 }
 
+// Each leg is 63 chords, and no entity follows that would end the polyline.
+TEST_F(DxfFile, TooManyChordsAreRefusedWhereverTheyAreDrawn) {
+  std::string legs;
+  for (int i = 0; i < 2'000; ++i) legs += fmt::format("10\n{}\n20\n0\n42\n1e9\n", i % 7);
+  expect_fails(entities("0\nLWPOLYLINE\n70\n0\n" + legs), "over 100000 walls");
+  std::string vertices;
+  for (int i = 0; i < 2'000; ++i) vertices += fmt::format("0\nVERTEX\n10\n{}\n20\n0\n42\n1e9\n", i % 7);
+  const std::string cut = "0\nSECTION\n2\nENTITIES\n0\nPOLYLINE\n70\n0\n" + vertices + "0\nEOF\n";
+  expect_fails(cut, "over 100000 walls");
+}
+
+TEST_F(DxfFile, SheetsInPaperSpaceAreNoWalls) {
+  const std::string frame =
+      "0\nLWPOLYLINE\n67\n1\n70\n1\n10\n-100\n20\n-100\n10\n741\n20\n-100\n10\n741\n20\n494\n"
+      "0\nPOLYLINE\n67\n1\n70\n1\n0\nVERTEX\n10\n-90\n20\n-90\n0\nVERTEX\n10\n700\n20\n400\n"
+      "0\nSEQEND\n";
+  EXPECT_NEAR(inside_m2(read(entities(frame + kRectangle))), 24, 1.5);
+  expect_fails(entities(frame), "draws no wall");
+}
+
 TEST_F(DxfFile, AnArcOfNoSenseIsNoWall) {
   expect_fails(entities("0\nARC\n10\n3\n20\n3\n40\n0\n50\n0\n51\n0\n"), "spans 0 m");
 }

@@ -1,38 +1,15 @@
-#include "client/engine/row_file.hpp"
+#include "common/base/row_file.hpp"
 
 #include <gmock/gmock.h>
-#include <sys/resource.h>
-
-#include <csignal>
 
 #include "common/recording/files.hpp"
+#include "common/recording/tests/file_limit.hpp"
 #include "common/recording/tests/temporary_folder.hpp"
 
 namespace liloc {
 namespace {
 
 using testing::HasSubstr;
-
-/// No file of this process grows beyond, as where a disk is full.
-class FileLimit {
- public:
-  explicit FileLimit(rlim_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit now{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &now);
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
-  }
-  FileLimit(const FileLimit&) = delete;
-  FileLimit& operator=(const FileLimit&) = delete;
-  ~FileLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int) = nullptr;
-};
 
 TEST(RowFile, StartsAnewWithItsHeader) {
   const TemporaryFolder folder;

@@ -1,4 +1,4 @@
-#include "client/engine/row_file.hpp"
+#include "common/base/row_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

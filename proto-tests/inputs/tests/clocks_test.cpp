@@ -18,7 +18,7 @@ double load() {
   return programs / std::max(1U, std::thread::hardware_concurrency());
 }
 
-constexpr double kOverloaded = 3;  // beyond, frames of ten a second are late or never come
+constexpr double kOverloaded = 2.5;  // beyond, frames of ten a second are late or never come
 
 /// The project's bound from a good stream to a located device, and a moment more; on a computer that has
 /// others' work to do as well it is longer.

@@ -18,8 +18,8 @@ class SurfaceBits {
   SurfaceBits(Worth worth, double sum) : worth_(std::move(worth)), sum_(sum) {}
 
   /// Adds what a device's thinned cloud, `medium` or `sparse` of its query, shows at a pose: of its points that
-  /// lie on a surface that faces their way, the rarest one in each cell. A surface is worth the more the rarer such ones are at that height
-  /// (`ScoreField`): 1 for the rarest, next to nothing for floor.
+  /// lie on a surface that faces their way, the rarest one in each cell. A surface is worth the more the rarer
+  /// such ones are at that height (`ScoreField`): 1 for the rarest, next to nothing for floor.
   void add(const Target& target, const Cloud& device_points, const Pose& T_map_sensor);
 
   /// Sum over the cells.

@@ -101,7 +101,7 @@ TEST_F(Roaming, WhoKeepsTheDomainIsToldOnceAndServedOn) {
   ASSERT_TRUE(server) << server.error().message;
   join();
   EXPECT_TRUE(is_answered(1));
-  EXPECT_TRUE(matched_);
+  EXPECT_TRUE(within(20s, [&] { return matched_.load(); }));
   for (std::uint64_t seq = 2; seq < 4; ++seq) {
     roam();
     EXPECT_TRUE(within(20s, [&] { return lines().size() >= seq; }));

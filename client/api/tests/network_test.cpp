@@ -38,7 +38,7 @@ class Roaming : public testing::Test {
       if (level >= log::Level::warning && line.starts_with("robot1")) lines_.emplace_back(line);
     });
   }
-  ~Roaming() override {
+  void TearDown() override {
     network_.reset();
     log::set_sink({});
   }

@@ -65,7 +65,11 @@ std::vector<Hypothesis> judge_candidates(const SpotProblem& problem, std::vector
   std::vector<Hypothesis> refined = refined_of(problem, candidates);
   for (Hypothesis& h : refined)
     h.standing = standing_at(problem, problem.query.medium, h.T_map_sensor(), h.judgement, kRefinedRanking);
-  std::ranges::stable_sort(refined, std::ranges::greater(), &Hypothesis::standing);
+  // Its rivals are those that the judge likes best, as when the confidence was fitted.
+  std::ranges::stable_sort(refined, std::ranges::greater(),
+                           [](const Hypothesis& h) { return h.judgement.score; });
+  const auto best = std::ranges::max_element(refined, {}, &Hypothesis::standing);
+  if (best != refined.end()) std::rotate(refined.begin(), best, best + 1);
   std::vector<Hypothesis> kept;
   for (const Hypothesis& h : refined) {
     const bool known = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& k) {

@@ -7,7 +7,8 @@
 
 namespace liloc {
 
-/// Judges candidates roughly, refines the best, judges them again: distinct hypotheses, best first.
+/// Judges candidates roughly, refines the best, judges them again. Distinct hypotheses: first the one that
+/// stands highest (`standing_of`), then by the judge's score.
 [[nodiscard]] std::vector<Hypothesis> judge_candidates(const SpotProblem& problem,
                                                        std::vector<Candidate> candidates);
 

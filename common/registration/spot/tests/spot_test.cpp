@@ -33,7 +33,10 @@ TEST_P(SpotLaw, TheRightPlaceComesFirstWhateverWasProposedHigher) {
   EXPECT_LT(degrees(angle_between_rad(found.front().T_map_sensor(), w.T_map_device)), 1);
   EXPECT_LE(found.size(), problem.judging.keep);
   for (std::size_t i = 1; i < found.size(); ++i) {
-    EXPECT_GE(found[i - 1].standing, found[i].standing);
+    EXPECT_GE(found[0].standing, found[i].standing);
+    if (i > 1) {
+      EXPECT_GE(found[i - 1].judgement.score, found[i].judgement.score);
+    }
     for (std::size_t k = 0; k < i; ++k)
       EXPECT_FALSE(same_place(found[i].T_map_sensor(), found[k].T_map_sensor()));
   }

@@ -27,15 +27,6 @@ int free_port() {
 
 }  // namespace
 
-bool comes_to_hold(const std::function<bool()>& holds, std::chrono::milliseconds within) {
-  const auto deadline = std::chrono::steady_clock::now() + within;
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() >= deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return true;
-}
-
 Result<std::unique_ptr<ServerProcess>> ServerProcess::start(int domain, const std::filesystem::path& site_file,
                                                             const std::filesystem::path& log_file) {
   std::unique_ptr<ServerProcess> server(new ServerProcess);

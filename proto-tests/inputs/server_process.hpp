@@ -7,9 +7,6 @@
 
 namespace liloc::inputs {
 
-/// Whether it comes to hold in time.
-[[nodiscard]] bool comes_to_hold(const std::function<bool()>& holds, std::chrono::milliseconds within);
-
 class ServerProcess {
  public:
   /// Starts it in the domain and joins that to listen. Errors: the program, a port, DDS.

@@ -8,26 +8,18 @@
 #include "client/api/tests/by_heart_server.hpp"
 #include "common/base/log.hpp"
 #include "common/recording/tests/temporary_folder.hpp"
+#include "common/testing/within.hpp"
 
 namespace liloc::client {
 namespace {
 
 using namespace std::chrono_literals;
+using test::within;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 constexpr int kDomain = 137;  // of this test alone
-
-template <class Condition>
-bool within(std::chrono::milliseconds limit, const Condition& condition) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(5ms);
-  }
-  return true;
-}
 
 /// A client's network on the loopback, with the addresses that a test gives it.
 class Roaming : public testing::Test {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "client/include/liloc/client.h"
+#include "common/testing/within.hpp"
 
 namespace liloc::test {
 
@@ -44,13 +45,6 @@ inline Handle created(const liloc_client_options& options = good_options()) {
 inline liloc_status push(liloc_client* client, std::int64_t stamp_ns, std::uint16_t units = 2000) {
   const std::vector<std::uint16_t> image(kWidth * kHeight, units);
   return liloc_client_push_depth(client, image.data(), kWidth, kHeight, stamp_ns);
-}
-
-inline bool within(std::chrono::seconds limit, const std::function<bool()>& holds) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!holds() && std::chrono::steady_clock::now() < end)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  return holds();
 }
 
 }  // namespace liloc::test

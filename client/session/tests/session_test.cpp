@@ -11,22 +11,13 @@
 
 #include "client/engine/tests/walker.hpp"
 #include "common/base/log.hpp"
+#include "common/testing/within.hpp"
 
 namespace liloc {
 namespace {
 
 using namespace test;
 using namespace std::chrono_literals;
-
-template <class Condition>
-bool within(std::chrono::milliseconds limit, Condition&& condition) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
 
 SessionOptions options(std::size_t queue = 100) {
   SessionOptions o;

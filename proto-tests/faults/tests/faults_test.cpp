@@ -8,6 +8,7 @@
 #include <sstream>
 #include <thread>
 
+#include "common/testing/within.hpp"
 #include "proto-tests/faults/verdict.hpp"
 #include "proto-tests/replay/tests/temp_folder.hpp"
 #include "proto-tests/sim/write_recording.hpp"
@@ -16,6 +17,7 @@ namespace liloc::faults {
 namespace {
 
 using namespace std::chrono_literals;
+using test::within;
 using testing::HasSubstr;
 
 #ifdef LILOC_SANITIZED
@@ -28,17 +30,6 @@ std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   return text.str();
-}
-
-/// Waits until something holds, for so long at most.
-template <class Condition>
-bool within(std::chrono::milliseconds limit, const Condition& condition) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(20ms);
-  }
-  return true;
 }
 
 class Faults : public testing::Test {

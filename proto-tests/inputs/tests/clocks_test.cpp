@@ -20,12 +20,8 @@ double load() {
 
 constexpr double kOverloaded = 2.5;  // beyond, frames of ten a second are late or never come
 
-/// The project's bound from a good stream to a located device, and a moment more; on a computer that has
-/// others' work to do as well it is longer.
-std::chrono::milliseconds soon(std::chrono::milliseconds bound = 3s) {
-  const double busy = std::clamp(load(), 1.0, kOverloaded);
-  return std::chrono::milliseconds(std::lround(busy * static_cast<double>((bound + 500ms).count())));
-}
+/// The project's bound from a good stream to a located device, and a moment more.
+constexpr auto kSoon = 3500ms;
 
 class Clocks : public LiveSite {
  protected:
@@ -37,7 +33,7 @@ class Clocks : public LiveSite {
     add_robot(0);
     add_robot(1, {"--points-topic", "device1/points"});
     add_robot(2, {"--odometry-topic", "device2/odom"});
-    ASSERT_TRUE(comes_to_hold([&] { return all_located(); }, 60s) || !kMeasured) << robots_told();
+    ASSERT_TRUE(within(60s, [&] { return all_located(); }) || !kMeasured) << robots_told();
   }
   [[nodiscard]] std::vector<std::uint32_t> segments() const {
     std::vector<std::uint32_t> all;
@@ -59,17 +55,14 @@ void Clocks::set_clocks_back_and_locate() {
   std::vector<std::uint64_t> refused;
   for (const auto& robot : robots_) refused.push_back(robot->stats().frames_refused);
   site_->spoil.device_ahead_ns = -from_seconds(10);
-  const bool located = comes_to_hold(
-      [&] {
-        bool anew = true;
-        for (std::size_t i = 0; i < robots_.size(); ++i) {
-          if (robots_[i]->stats().problem.find("clock was set back by 10.0 s") != std::string::npos)
-            told[i] = true;
-          anew = anew && robots_[i]->newest().odom_segment > before[i] && error_m(i) < 0.3;
-        }
-        return anew && all_located();
-      },
-      soon());
+  const bool located = within(kSoon, [&] {
+    bool anew = true;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      if (robots_[i]->stats().problem.find("clock was set back by 10.0 s") != std::string::npos) told[i] = true;
+      anew = anew && robots_[i]->newest().odom_segment > before[i] && error_m(i) < 0.3;
+    }
+    return anew && all_located();
+  });
   EXPECT_TRUE(located) << robots_told();
   EXPECT_THAT(told, testing::Each(true)) << robots_told();
   for (const std::size_t i : {0U, 2U})  // clouds without a return are refused as well
@@ -79,17 +72,14 @@ void Clocks::set_clocks_back_and_locate() {
 /// Nobody tells tracking on a pose of long ago.
 void Clocks::fall_silent_and_locate() {
   site_->spoil.devices_silent = true;
-  EXPECT_TRUE(comes_to_hold(
-      [&] {
-        return all([](const Robot& robot) {
-          return robot.newest().state == client::State::lost &&
-                 robot.stats().problem.find("no depth frames for") != std::string::npos;
-        });
-      },
-      soon(2s)))
-      << robots_told();
+  EXPECT_TRUE(within(2500ms, [&] {
+    return all([](const Robot& robot) {
+      return robot.newest().state == client::State::lost &&
+             robot.stats().problem.find("no depth frames for") != std::string::npos;
+    });
+  })) << robots_told();
   site_->spoil.devices_silent = false;
-  EXPECT_TRUE(comes_to_hold(all_right, soon())) << robots_told();
+  EXPECT_TRUE(within(kSoon, all_right)) << robots_told();
 }
 
 void Clocks::send_strays_and_go_on() {
@@ -140,14 +130,14 @@ TEST_F(Clocks, OfCeilingLidarsAreCorrectedOrLeftOutAndToldEverywhere) {
            std::abs(health.clock_offset_s - by_s) < 0.2;
   };
   site_->spoil.lidar_ahead_ns[0] = from_seconds(37);
-  EXPECT_TRUE(comes_to_hold([&] { return server_->lidar(0).state == wire::LidarState::clock_off; }, 3s));
-  EXPECT_TRUE(comes_to_hold([&] { return corrected(0, 37); }, 6s)) << server_log();
+  EXPECT_TRUE(within(3s, [&] { return server_->lidar(0).state == wire::LidarState::clock_off; }));
+  EXPECT_TRUE(within(6s, [&] { return corrected(0, 37); })) << server_log();
   {  // at twice the pace of time
     const std::jthread drift([&](const std::stop_token& stop) {
       for (; !stop.stop_requested(); std::this_thread::sleep_for(20ms))
         site_->spoil.lidar_ahead_ns[2] += from_ms(20);
     });
-    EXPECT_TRUE(comes_to_hold([&] { return server_->lidar(2).state == wire::LidarState::clock_off; }, 5s));
+    EXPECT_TRUE(within(5s, [&] { return server_->lidar(2).state == wire::LidarState::clock_off; }));
     const std::string told = doctor().out;
     EXPECT_THAT(told,
                 ContainsRegex("warn  edge: ceiling0 has a clock 3[67]\\.[0-9]+ s ahead of the site's, which"));
@@ -156,10 +146,9 @@ TEST_F(Clocks, OfCeilingLidarsAreCorrectedOrLeftOutAndToldEverywhere) {
     EXPECT_EQ(metric(server_->page("/metrics"), "liloc_lidar_up{lidar=\"ceiling2\"}"), 0);
   }
   site_->spoil.lidar_ahead_ns[2] = 0;
-  EXPECT_TRUE(comes_to_hold([&] { return server_->lidar(2).state == wire::LidarState::ok; }, 8s))
-      << server_log();
+  EXPECT_TRUE(within(8s, [&] { return server_->lidar(2).state == wire::LidarState::ok; })) << server_log();
   site_->spoil.lidar_ahead_ns[1] = from_seconds(37);  // two against two: the host's clock decides
-  EXPECT_TRUE(comes_to_hold([&] { return corrected(0, 37) && corrected(1, 37); }, 8s)) << server_log();
+  EXPECT_TRUE(within(8s, [&] { return corrected(0, 37) && corrected(1, 37); })) << server_log();
   const std::string two = doctor().out, metrics = server_->page("/metrics");
   for (const std::string id : {"ceiling0", "ceiling1"}) {
     EXPECT_THAT(two, HasSubstr("warn  edge: " + id + " has a clock"));
@@ -168,7 +157,7 @@ TEST_F(Clocks, OfCeilingLidarsAreCorrectedOrLeftOutAndToldEverywhere) {
   }
   EXPECT_THAT(two, AllOf(HasSubstr("ok    edge: ceiling2 ok at"), HasSubstr("ok    edge: ceiling3 ok at")));
   EXPECT_NEAR(metric(metrics, "liloc_lidar_clock_offset_seconds{lidar=\"ceiling2\"}"), 0, 0.2);
-  EXPECT_TRUE(comes_to_hold(all_right, soon())) << robots_told();
+  EXPECT_TRUE(within(kSoon, all_right)) << robots_told();
 }
 
 }  // namespace

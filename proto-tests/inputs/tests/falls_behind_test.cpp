@@ -33,12 +33,12 @@ TEST(FallsBehind, AStoppedSimulationLeavesOutWhatIsLateSaysSoAndGoesOn) {
                             "60", "--lidars", "2", "--image-width", "160", "--image-height", "120"},
                            log);
   ASSERT_TRUE(sim) << sim.error().message;
-  ASSERT_TRUE(comes_to_hold([&] { return heard() >= 4; }, 30s)) << replay::last_lines(log, 5);
+  ASSERT_TRUE(within(30s, [&] { return heard() >= 4; })) << replay::last_lines(log, 5);
   ASSERT_EQ(kill(sim->pid(), SIGSTOP), 0);
   std::this_thread::sleep_for(2s);
   const std::size_t before = heard();
   ASSERT_EQ(kill(sim->pid(), SIGCONT), 0);
-  EXPECT_TRUE(comes_to_hold([&] { return heard() >= before + 9; }, 10s)) << replay::last_lines(log, 5);
+  EXPECT_TRUE(within(10s, [&] { return heard() >= before + 9; })) << replay::last_lines(log, 5);
   EXPECT_TRUE(sim->running());
   const Status stopped = sim->stop();
   EXPECT_TRUE(stopped) << stopped.error().message;

@@ -35,8 +35,7 @@ TEST(FarSite, ARoomNineHundredMetresOffTakesNoMoreMemoryThanOneNextDoor) {
     const auto status = (*server)->status();
     return status && status->answered >= 10;
   };
-  EXPECT_TRUE(
-      comes_to_hold([&] { return answered(near_server) && answered(far_server); }, kMeasured ? 30s : 120s))
+  EXPECT_TRUE(within(kMeasured ? 30s : 120s, [&] { return answered(near_server) && answered(far_server); }))
       << replay::last_lines(folder.path() / "far.log", 5);
   for (const auto* server : {&near_server, &far_server})
     for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(wire::is_heard((**server)->lidar(i).state)) << i;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "common/testing/program.hpp"
+#include "common/testing/within.hpp"
 #include "proto-tests/inputs/played_site.hpp"
 #include "proto-tests/inputs/robot.hpp"
 #include "proto-tests/inputs/server_process.hpp"
@@ -11,6 +12,7 @@
 namespace liloc::inputs {
 
 using namespace std::chrono_literals;
+using test::within;
 
 #ifdef LILOC_SANITIZED
 constexpr bool kMeasured = false;  // ten times slower: the processes are exercised, their answers come too late
@@ -45,7 +47,7 @@ class LiveSite : public testing::Test {
     auto server = ServerProcess::start(domain_, folder_.path() / "site.json", folder_.path() / "server.log");
     ASSERT_TRUE(server) << server.error().message;
     server_ = std::move(*server);
-    ASSERT_TRUE(comes_to_hold([&] { return server_->status().has_value(); }, 30s)) << server_log();
+    ASSERT_TRUE(within(30s, [&] { return server_->status().has_value(); })) << server_log();
   }
   /// Arguments of the client of one of the site's devices.
   [[nodiscard]] std::vector<std::string> device(std::size_t index) const {

@@ -69,7 +69,7 @@ TEST_F(LiveSite, ImusThatLieAreNamedAndLeadNobodyAway) {  // and 65535 is no wal
     return std::ranges::find(located_after, false) == located_after.end() &&
            robots_.back()->stats().imu_refused > 0;
   };
-  const bool named = comes_to_hold(done, 40s);
+  const bool named = within(40s, done);
   if (!kMeasured) return;
   EXPECT_TRUE(named) << testing::PrintToString(told) << robots_told();
   EXPECT_EQ(wrong, 0) << robots_told();
@@ -80,7 +80,7 @@ TEST_F(LiveSite, LidarsThatAreBlindOrInAnotherUnitFailTheDoctor) {
   if (HasFatalFailure()) return;
   add_robot(0);
   const auto becomes = [&](std::size_t lidar, wire::LidarState state) {
-    return comes_to_hold([&] { return server_->lidar(lidar).state == state; }, 10s) || !kMeasured;
+    return within(10s, [&] { return server_->lidar(lidar).state == state; }) || !kMeasured;
   };
   EXPECT_TRUE(becomes(1, wire::LidarState::ok) && becomes(2, wire::LidarState::ok)) << server_log();
   site_->spoil.lidar_image[1] = covered;
@@ -94,7 +94,7 @@ TEST_F(LiveSite, LidarsThatAreBlindOrInAnotherUnitFailTheDoctor) {
   EXPECT_THAT(told.out, testing::HasSubstr("FAIL  edge: ceiling2 measures implausible ranges"));
   site_->spoil.lidar_image[1] = site_->spoil.lidar_image[2] = nullptr;
   EXPECT_TRUE(becomes(1, wire::LidarState::ok) && becomes(2, wire::LidarState::ok)) << server_log();
-  EXPECT_TRUE(comes_to_hold([&] { return all_located() && error_m(0) < 0.3; }, 5s)) << robots_told();
+  EXPECT_TRUE(within(5s, [&] { return all_located() && error_m(0) < 0.3; })) << robots_told();
 }
 
 }  // namespace

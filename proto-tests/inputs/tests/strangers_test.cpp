@@ -38,7 +38,7 @@ TEST_F(LiveSite, AStrangersFloodIsFewLinesWithoutControlCharacters) {
   auto client = replay::Child::start(command, client_log);
   ASSERT_TRUE(client) << client.error().message;
   const auto verified = [&] { return server_->status()->verified; };
-  EXPECT_TRUE(comes_to_hold([&] { return verified() > 0; }, 30s) || !kMeasured) << server_log();
+  EXPECT_TRUE(within(30s, [&] { return verified() > 0; }) || !kMeasured) << server_log();
   auto stranger = Stranger::join(domain_, "device0", "ceiling0");
   ASSERT_TRUE(stranger) << stranger.error().message;
   (*stranger)->molest();
@@ -50,7 +50,7 @@ TEST_F(LiveSite, AStrangersFloodIsFewLinesWithoutControlCharacters) {
   EXPECT_GT(rounds, kMeasured ? 50 : 2);
   stranger->reset();
   const auto before = verified();
-  EXPECT_TRUE(comes_to_hold([&] { return verified() > before + 1; }, 10s) || !kMeasured)
+  EXPECT_TRUE(within(10s, [&] { return verified() > before + 1; }) || !kMeasured)
       << "who was molested is served again";
   EXPECT_TRUE(server_->running() && client->running());
   const Written server = written(server_log_file), of_client = written(client_log);

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "common/credentials/tests/keystore.hpp"
+#include "common/testing/within.hpp"
 #include "common/wire/sensors/sensor_publishers.hpp"
 #include "common/wire/spots/client_link.hpp"
 
@@ -22,15 +23,9 @@ namespace liloc {
 namespace {
 
 using namespace std::chrono_literals;
+using test::within;
 using testing::HasSubstr;
 constexpr int kDomain = 202;
-
-bool within(std::chrono::milliseconds limit, const std::function<bool()>& holds) {
-  for (const auto end = std::chrono::steady_clock::now() + limit; std::chrono::steady_clock::now() < end;
-       std::this_thread::sleep_for(10ms))
-    if (holds()) return true;
-  return false;
-}
 
 /// A process that is ended with its owner.
 class Child {

@@ -3,33 +3,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/app/tests/remembered_device.hpp"
+
 namespace liloc {
 namespace {
 
 using nlohmann::json;
-
-Remembered some() {
-  Remembered remembered;
-  remembered.odom_segment = 7;
-  Followed& f = remembered.followed;
-  f.estimate.T_map_sensor = Eigen::Translation3d(3, 4, 1.2) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ());
-  f.estimate.covariance = 1e-4 * Matrix6d::Identity();
-  f.estimate.covariance(0, 5) = f.estimate.covariance(5, 0) = 2e-5;
-  f.T_odom_sensor.translation() = Eigen::Vector3d(9, 8, 7);
-  f.log_odds = 6.5;
-  f.usual = {0.3, 1.2, 0.01, 0};
-  return remembered;
-}
 
 Result<Remembered> read(const json& object) {
   return remembered_from(JsonFields(object, "here"));
 }
 
 TEST(RememberedJson, ComesBackAsItWas) {
-  const auto again = read(json::parse(to_json(some()).dump()));
+  const auto again = read(json::parse(to_json(test::remembered_device()).dump()));
   ASSERT_TRUE(again) << again.error().message;
   EXPECT_EQ(again->odom_segment, 7U);
-  const Followed &now = again->followed, before = some().followed;
+  const Followed &now = again->followed, before = test::remembered_device().followed;
   EXPECT_TRUE(now.estimate.T_map_sensor.isApprox(before.estimate.T_map_sensor, 1e-9));
   EXPECT_TRUE(now.estimate.covariance.isApprox(before.estimate.covariance, 1e-12));
   EXPECT_TRUE(now.T_odom_sensor.isApprox(before.T_odom_sensor, 1e-9));
@@ -49,7 +38,7 @@ TEST(RememberedJson, WhatIsDamagedIsNamed) {
            {"/log_odds", 1e300, "here.log_odds"},
            {"/usual", 3, "here.usual is missing"},
            {"/usual/excess", "much", "here.usual.excess"}}) {
-    json object = json::parse(to_json(some()).dump());
+    json object = json::parse(to_json(test::remembered_device()).dump());
     object[json::json_pointer(path)] = value;
     const auto damaged = read(object);
     ASSERT_FALSE(damaged) << path;

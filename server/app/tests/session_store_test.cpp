@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "common/base/log.hpp"
+#include "server/app/tests/remembered_device.hpp"
 
 namespace liloc {
 namespace {
@@ -24,20 +25,6 @@ Site a_site(double x_m = 1) {
   site.global_lidars[0].id = "north";
   site.global_lidars[0].T_map_sensor.translation().x() = x_m;
   return site;
-}
-
-Remembered some(double x_m = 3) {
-  Remembered remembered;
-  remembered.odom_segment = 7;
-  Followed& f = remembered.followed;
-  f.estimate.T_map_sensor =
-      Eigen::Translation3d(x_m, 4, 1.2) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ());
-  f.estimate.covariance = 1e-4 * Matrix6d::Identity();
-  f.estimate.covariance(0, 5) = f.estimate.covariance(5, 0) = 2e-5;
-  f.T_odom_sensor.translation() = Eigen::Vector3d(9, 8, 7);
-  f.log_odds = 6.5;
-  f.usual = {0.3, 1.2, 0.01, 0};
-  return remembered;
 }
 
 class Store : public testing::Test {
@@ -58,9 +45,9 @@ class Store : public testing::Test {
     fs::remove(file());
     SessionStore store(file(), a_site(), wall_ns, kStart);
     EXPECT_FALSE(store.begin("robot1", 0xfedcba9876543210, kStart));
-    store.note("robot1", 0xfedcba9876543210, some(), kStart);
+    store.note("robot1", 0xfedcba9876543210, test::remembered_device(), kStart);
     EXPECT_FALSE(store.begin("robot2", 0xabcdef, kStart));
-    store.note("robot2", 0xabcdef, some(5), kStart);
+    store.note("robot2", 0xabcdef, test::remembered_device(5), kStart);
     ASSERT_TRUE(store.save(wall_ns, kStart));
   }
   [[nodiscard]] auto read(std::uint64_t session, const Site& site = a_site(), StampNs later_ns = 0) const {
@@ -82,14 +69,14 @@ TEST_F(Store, TheSameRunOfAClientGetsWhatIsRememberedForAMinute) {
   SessionStore store("", a_site(), kWall, kStart);
   EXPECT_FALSE(store.begin("robot1", 5, kStart));
   EXPECT_FALSE(store.begin("robot1", 5, kStart)) << "nothing was noted";
-  store.note("robot1", 5, some(), kStart);
+  store.note("robot1", 5, test::remembered_device(), kStart);
   const auto again = store.begin("robot1", 5, kStart + 3s);
   ASSERT_TRUE(again);
   EXPECT_NEAR(again->age_s, 3, 1e-9);
   EXPECT_EQ(again->remembered.odom_segment, 7U);
   EXPECT_FALSE(store.begin("robot2", 5, kStart)) << "another device";
   EXPECT_FALSE(store.begin("robot1", 5, kStart + 61s));
-  store.note("robot1", 5, some(), kStart);
+  store.note("robot1", 5, test::remembered_device(), kStart);
   EXPECT_FALSE(store.begin("robot1", 6, kStart)) << "another run";
   EXPECT_FALSE(store.begin("robot1", 5, kStart)) << "which has taken its place";
 }
@@ -98,14 +85,14 @@ TEST_F(Store, WhatAnEarlierRunsRequestCameToIsNotTheNextOnes) {
   SessionStore store("", a_site(), kWall, kStart);
   EXPECT_FALSE(store.begin("robot1", 5, kStart));
   EXPECT_FALSE(store.begin("robot1", 6, kStart));
-  store.note("robot1", 5, some(), kStart);
+  store.note("robot1", 5, test::remembered_device(), kStart);
   EXPECT_FALSE(store.begin("robot1", 6, kStart));
 }
 
 TEST_F(Store, ADeviceThatIsSearchedIsNotTakenUp) {
   SessionStore store("", a_site(), kWall, kStart);
   EXPECT_FALSE(store.begin("robot1", 5, kStart));
-  store.note("robot1", 5, some(), kStart);
+  store.note("robot1", 5, test::remembered_device(), kStart);
   store.note("robot1", 5, std::nullopt, kStart);
   EXPECT_FALSE(store.begin("robot1", 5, kStart));
 }
@@ -115,7 +102,7 @@ TEST_F(Store, ARestartedServerReadsWhatTheOneBeforeWrote) {
   const auto known = read(0xfedcba9876543210);
   ASSERT_TRUE(known);
   EXPECT_NEAR(known->age_s, 1, 1e-6);
-  const Followed &now = known->remembered.followed, before = some().followed;
+  const Followed &now = known->remembered.followed, before = test::remembered_device().followed;
   EXPECT_TRUE(now.estimate.T_map_sensor.isApprox(before.estimate.T_map_sensor, 1e-9));
   EXPECT_TRUE(now.estimate.covariance.isApprox(before.estimate.covariance, 1e-9));
   EXPECT_TRUE(now.T_odom_sensor.isApprox(before.T_odom_sensor, 1e-9));
@@ -181,7 +168,7 @@ TEST_F(Store, ADeviceThatComesBackNeedsNoRoom) {
   for (int i = 0; i < 4096; ++i) {
     const std::string id = "robot" + std::to_string(i);
     EXPECT_FALSE(store.begin(id, 5, kStart + i * 1ms));
-    store.note(id, 5, some(), kStart + i * 1ms);
+    store.note(id, 5, test::remembered_device(), kStart + i * 1ms);
   }
   EXPECT_TRUE(store.begin("robot0", 5, kStart + 10s)) << "the oldest of a full house";
   EXPECT_FALSE(store.begin("a-stranger", 5, kStart + 10s));

@@ -7,21 +7,13 @@
 #include <stdexcept>
 
 #include "common/base/log.hpp"
+#include "common/testing/within.hpp"
 
 namespace liloc {
 namespace {
 
 using namespace std::chrono_literals;
-
-template <class Condition>
-bool within(std::chrono::milliseconds limit, Condition&& condition) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
+using test::within;
 
 struct Counted {
   [[nodiscard]] Upkeep::Duties duties() {

@@ -4,10 +4,8 @@
 
 #include <chrono>
 #include <functional>
-#include <future>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "common/base/log.hpp"
@@ -54,82 +52,6 @@ TEST_P(LocalizerLaw, AColdRequestIsAnsweredOnItsOwn) {
   EXPECT_TRUE((*first.T_map_odom * request.T_odom_sensor).isApprox(*first.T_map_sensor, 1e-9));
 }
 
-TEST_P(LocalizerLaw, WhatWasRememberedIsGoneOnWithByAnotherServer) {
-  World before(GetParam()), after(GetParam());
-  EXPECT_FALSE(before.localizer->remembered("robot"));
-  SpotReply last;
-  int k = 0;
-  for (; k < 6 && !last.verified(); ++k) last = before.ask(k);
-  ASSERT_TRUE(last.verified());
-  const auto remembered = before.localizer->remembered("robot");
-  ASSERT_TRUE(remembered);
-  after.localizer->resume("robot", *remembered, 0.8);
-  const SpotReply reply = after.ask(k);
-  EXPECT_EQ(reply.reason, Reason::confirmed) << reply.text;
-  ASSERT_TRUE(reply.T_map_sensor);
-  EXPECT_TRUE(near(*reply.T_map_sensor, after.truth(k)));
-}
-
-TEST_P(LocalizerLaw, WhoComesBackIsLessSureTheLongerNobodyLooked) {
-  World world(GetParam());
-  SpotReply last;
-  int k = 0;
-  for (; k < 6 && !last.verified(); ++k) last = world.ask(k);
-  ASSERT_TRUE(last.verified());
-  const auto before = world.localizer->remembered("robot");
-  ASSERT_TRUE(before);
-  double sd_m = before->followed.estimate.sd_m();
-  for (const double away_s : {5.0, 50.0}) {
-    world.localizer->forget("robot");
-    EXPECT_TRUE(world.localizer->remembered("robot")) << "a request may still be in work";
-    world.localizer->resume("robot", *before, away_s);
-    const auto now = world.localizer->remembered("robot");
-    ASSERT_TRUE(now);
-    EXPECT_LE(now->followed.log_odds, before->followed.log_odds);
-    EXPECT_GT(now->followed.estimate.sd_m(), 1.5 * sd_m) << away_s << " s";
-    sd_m = now->followed.estimate.sd_m();
-  }
-}
-
-TEST_P(LocalizerLaw, WhoLeavesDuringASearchKeepsNobodyWaiting) {
-  std::promise<void> inside, open;
-  LocalizerOptions options;
-  options.idle = [&, first = true]() mutable {
-    if (std::exchange(first, false)) {
-      inside.set_value();
-      open.get_future().wait();
-    }
-    return true;
-  };
-  World world(GetParam(), options);
-  world.watch(0);
-  auto reply =
-      std::async(std::launch::async, [&] { return world.localizer->locate(world.request(0, world.truth(0))); });
-  inside.get_future().wait();
-  auto forgotten = std::async(std::launch::async, [&] { world.localizer->forget("robot"); });
-  EXPECT_EQ(forgotten.wait_for(std::chrono::seconds(20)), std::future_status::ready);
-  open.set_value();
-  (void)reply.get();
-}
-
-TEST_P(LocalizerLaw, WhatIsRememberedOfAnotherPlaceIsNotBelieved) {
-  World before(GetParam()), after(GetParam());
-  SpotReply last;
-  int k = 0;
-  for (; k < 6 && !last.verified(); ++k) last = before.ask(k);
-  ASSERT_TRUE(last.verified());
-  auto remembered = before.localizer->remembered("robot");
-  ASSERT_TRUE(remembered);
-  remembered->followed.estimate.T_map_sensor.translation().x() += 1.5;
-  after.localizer->resume("robot", *remembered, 0.8);
-  for (const int end = k + 4; k < end; ++k) {
-    const SpotReply reply = after.ask(k);
-    if (reply.verified()) {
-      EXPECT_TRUE(near(*reply.T_map_sensor, after.truth(k))) << "spot " << k;
-    }
-  }
-}
-
 TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {
   World world(GetParam());
   for (int k = 0; k < 5; ++k) (void)world.ask(k);
@@ -159,15 +81,6 @@ TEST_P(LocalizerLaw, ADeviceThatWasLiftedElsewhereIsNotBelievedAndFoundAgain) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LocalizerLaw, testing::Range(1U, 6U));
-
-TEST(Localizer, WhoIsForgottenIsSearchedAnew) {
-  World world(1);
-  int k = 0;
-  while (k < 6 && !world.ask(k).verified()) ++k;
-  ASSERT_EQ(world.ask(k + 1).reason, Reason::confirmed);
-  world.localizer->forget_all();
-  EXPECT_NE(world.ask(k + 2).reason, Reason::confirmed) << "the same id and odom segment";
-}
 
 TEST(Localizer, RefusalsSayWhy) {
   World world(1);

@@ -183,45 +183,52 @@ TEST(SchedulerClients, NothingIsKeptOfAClientThatLeftWhileItsRequestsWereInHand)
   answers.expect_each_once(2);
 }
 
+/// What happened, in its order.
+class Events {
+ public:
+  void note(std::string event) {
+    const std::scoped_lock lock(mutex_);
+    all_.push_back(std::move(event));
+  }
+  [[nodiscard]] std::vector<std::string> all() const {
+    const std::scoped_lock lock(mutex_);
+    return all_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> all_;
+};
+
 TEST(SchedulerClients, WhatAnEndedRunLeftBehindIsForgottenBeforeTheNextIsAnswered) {
   Gate gate;
   Answers answers;
-  std::mutex mutex;
-  std::vector<std::string> events;
-  const auto note = [&](std::string event) {
-    const std::scoped_lock lock(mutex);
-    events.push_back(std::move(event));
-  };
+  Events events;
   const auto locate = [&](const SpotRequest& r) {
     const SpotReply reply = gate.pass(r);
-    note("answered " + std::to_string(r.seq));
+    events.note("answered " + std::to_string(r.seq));
     return reply;
   };
-  RequestScheduler scheduler({.workers = 2},
-                             {.locate = locate, .forget = [&](const std::string&) { note("forgotten"); }},
-                             answers.sink());
+  RequestScheduler scheduler(
+      {.workers = 2}, {.locate = locate, .forget = [&](const std::string&) { events.note("forgotten"); }},
+      answers.sink());
   scheduler.submit(arrival("a", 7, 1));
   gate.wait_inside();
   scheduler.submit(arrival("a", 1, 2));
   gate.open();
   ASSERT_TRUE(answers.wait_for(2));
   scheduler.stop();
-  EXPECT_EQ(events, (std::vector<std::string>{"forgotten", "answered 7", "forgotten", "answered 1"}));
+  EXPECT_EQ(events.all(), (std::vector<std::string>{"forgotten", "answered 7", "forgotten", "answered 1"}));
   answers.expect_each_once(2);
 }
 
 TEST(SchedulerClients, ARunThatComesBackWithAnotherWriterIsNotForgottenByItsOldRequest) {
   Gate gate;
   Answers answers;
-  std::mutex mutex;
-  std::vector<std::string> events;
-  const auto note = [&](std::string event) {
-    const std::scoped_lock lock(mutex);
-    events.push_back(std::move(event));
-  };
+  Events events;
   ServiceBackend backend{.locate = [&](const SpotRequest& r) { return gate.pass(r); }};
-  backend.forget = [&](const std::string&) { note("forgotten"); };
-  backend.begin = [&](const std::string&, std::uint64_t) { note("begun"); };
+  backend.forget = [&](const std::string&) { events.note("forgotten"); };
+  backend.begin = [&](const std::string&, std::uint64_t) { events.note("begun"); };
   RequestScheduler scheduler({.workers = 2}, backend, answers.sink());
   scheduler.submit(arrival("a", 1, 5));
   gate.wait_inside();
@@ -231,7 +238,7 @@ TEST(SchedulerClients, ARunThatComesBackWithAnotherWriterIsNotForgottenByItsOldR
   gate.open();
   ASSERT_TRUE(answers.wait_for(2));
   scheduler.stop();
-  EXPECT_EQ(events, (std::vector<std::string>{"begun", "forgotten", "begun"}));
+  EXPECT_EQ(events.all(), (std::vector<std::string>{"begun", "forgotten", "begun"}));
 }
 
 }  // namespace
